@@ -1,0 +1,43 @@
+# The ROS library, nodelet, node and bag tools, and everything that is installed for them.
+find_package(Boost REQUIRED COMPONENTS program_options)
+
+layer_sources(ros_sources ros)
+add_library(multicam_egomotion_ros ${ros_sources})
+add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+target_include_directories(multicam_egomotion_ros PUBLIC ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})
+target_link_libraries(multicam_egomotion_ros
+  PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} PRIVATE ${YAML_CPP_LIBRARIES})
+
+add_library(multicam_egomotion_nodelet src/ros/nodelet/ego_motion_nodelet.cpp)
+target_link_libraries(multicam_egomotion_nodelet multicam_egomotion_ros)
+
+add_executable(egomotion_node src/tools/egomotion_node.cpp)
+target_link_libraries(egomotion_node multicam_egomotion_ros)
+
+layer_sources(bag_runner_sources tools/bag_runner)
+add_executable(egomotion_bag src/tools/egomotion_bag.cpp ${bag_runner_sources})
+target_link_libraries(egomotion_bag multicam_egomotion_ros Boost::program_options)
+
+set(ros_tools egomotion_node egomotion_bag)
+if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/src/tools/egomotion_sim.cpp)
+  add_executable(egomotion_sim src/tools/egomotion_sim.cpp)
+  target_link_libraries(egomotion_sim multicam_egomotion_simulator multicam_egomotion_ros Boost::program_options)
+  list(APPEND ros_tools egomotion_sim)
+endif()
+
+install(TARGETS multicam_egomotion_ros multicam_egomotion_nodelet
+  ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+install(TARGETS ${ros_tools} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+install(DIRECTORY launch config DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+
+# Scripts run beside the modules they import.
+file(GLOB scripts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/scripts/*.py)
+install(PROGRAMS ${scripts} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+
+if(MULTICAM_EGOMOTION_TESTS)
+  include(cmake/ros_tests.cmake)
+endif()

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+
+#include "multicam_egomotion/imu/imu_calibration.h"
+#include "multicam_egomotion/imu/inertial_state.h"
+#include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/odometry/window.h"
+
+namespace multicam_egomotion {
+
+/// What is known of the body's motion without the images: predicts from frame to frame and learns from vision.
+/// Two kinds: InertialMotion (IMU) and ConstantRateMotion (none, contract 9).
+class MotionModel {
+ public:
+  virtual ~MotionModel() = default;
+
+  virtual bool initialized() const = 0;
+  /// Takes its start at `stamp_ns`; false while there is not enough to start from.
+  virtual bool initialize(std::int64_t stamp_ns) = 0;
+  /// Goes to `stamp_ns`, later than before.
+  virtual void advanceTo(std::int64_t stamp_ns) = 0;
+  virtual std::int64_t stamp() const = 0;
+
+  /// Motion of the body since the last frame, without vision.
+  virtual MotionSummary motionSinceFrame() const = 0;
+  /// Learns from the motion that the images alone say (contract 4); displacement only if `scale_seen`.
+  virtual void correct(const RelativeMotion& vision, bool scale_seen) = 0;
+  /// Makes now the frame.
+  virtual void markFrame() = 0;
+
+  /// Direction of the vertical in body axes (unit), now and at the last frame.
+  virtual Eigen::Vector3d up() const = 0;
+  virtual Eigen::Vector3d upAtFrame() const = 0;
+  virtual double tiltSigma() const = 0;  ///< per axis [rad]
+  virtual TwistWithCovariance twist() const = 0;
+  virtual Eigen::Vector3d gyroscopeBias() const { return Eigen::Vector3d::Zero(); }
+  virtual Eigen::Vector3d accelerometerBias() const { return Eigen::Vector3d::Zero(); }
+
+  /// Goes on at another time (clock jump): velocity is forgotten, `attitude_sigma` [rad] is added.
+  virtual void restartAt(std::int64_t stamp_ns, double attitude_sigma) = 0;
+  /// Start anew; biases are kept unless `forget_biases`.
+  virtual void reset(bool forget_biases) = 0;
+};
+
+/// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm.
+class InertialMotion : public MotionModel {
+ public:
+  InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options, const ImuBuffer* buffer);
+
+  bool initialized() const override { return initialized_; }
+  bool initialize(std::int64_t stamp_ns) override;
+  void advanceTo(std::int64_t stamp_ns) override;
+  std::int64_t stamp() const override { return state_.stamp(); }
+  MotionSummary motionSinceFrame() const override;
+  void correct(const RelativeMotion& vision, bool scale_seen) override;
+  void markFrame() override { state_.markFrame(); }
+  Eigen::Vector3d up() const override;
+  Eigen::Vector3d upAtFrame() const override;
+  double tiltSigma() const override { return state_.tiltSigma(); }
+  TwistWithCovariance twist() const override;
+  Eigen::Vector3d gyroscopeBias() const override { return state_.gyroscopeBias(); }
+  Eigen::Vector3d accelerometerBias() const override { return state_.accelerometerBias(); }
+  void restartAt(std::int64_t stamp_ns, double attitude_sigma) override;
+  void reset(bool forget_biases) override;
+
+  InertialState& state() { return state_; }
+
+ private:
+  ImuCalibration calibration_;
+  InertialState state_;
+  const ImuBuffer* buffer_;
+  bool initialized_ = false;
+};
+
+/// Goes on turning and moving as between the last two frames; the vertical is carried by visual rotation.
+class ConstantRateMotion : public MotionModel {
+ public:
+  /// `rotation_sigma`: of the rotation between two frames [rad]; `velocity_sigma`: when nothing is known [m/s].
+  ConstantRateMotion(double rotation_sigma, double velocity_sigma);
+
+  bool initialized() const override { return initialized_; }
+  bool initialize(std::int64_t stamp_ns) override;
+  void advanceTo(std::int64_t stamp_ns) override { stamp_ns_ = stamp_ns; }
+  std::int64_t stamp() const override { return stamp_ns_; }
+  MotionSummary motionSinceFrame() const override;
+  void correct(const RelativeMotion& vision, bool scale_seen) override;
+  void markFrame() override { frame_stamp_ns_ = stamp_ns_; }
+  Eigen::Vector3d up() const override { return up_; }
+  Eigen::Vector3d upAtFrame() const override { return up_at_frame_; }
+  double tiltSigma() const override;
+  TwistWithCovariance twist() const override { return twist_; }
+  void restartAt(std::int64_t stamp_ns, double attitude_sigma) override;
+  void reset(bool forget_biases) override;
+
+ private:
+  double seconds() const { return 1e-9 * static_cast<double>(stamp_ns_ - frame_stamp_ns_); }
+
+  double rotation_sigma_, velocity_sigma_;
+  bool initialized_ = false;
+  std::int64_t stamp_ns_ = 0, frame_stamp_ns_ = 0;
+  Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ(), up_at_frame_ = Eigen::Vector3d::UnitZ();
+  TwistWithCovariance twist_;
+};
+
+}  // namespace multicam_egomotion

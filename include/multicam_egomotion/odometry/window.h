@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "multicam_egomotion/estimation/bundle_adjustment.h"
+#include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/tracking/tracked_frame.h"
+
+namespace multicam_egomotion {
+
+struct WindowOptions {
+  int max_keyframes = 8;
+  double keyframe_parallax_px = 15.0;  ///< median image motion since the last keyframe, rotation taken out [px]
+  double keyframe_min_shared = 0.6;    ///< share of the tracks that the last keyframe saw too
+  double initial_pixel_sigma = 0.5;    ///< image noise until it has been measured [px]
+  double min_pixel_sigma = 0.1;        ///< [px]
+  double max_pixel_sigma = 2.0;        ///< [px]
+  double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
+  BundleOptions bundle;
+};
+
+/// What is known of the motion from one state to the next without vision (contract 6: IMU summary).
+struct MotionSummary {
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();               ///< predicted motion of the body
+  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Identity();     ///< of d in R = R_a_b Exp(d) [rad^2]
+  Eigen::Matrix3d translation_covariance = Eigen::Matrix3d::Identity();  ///< in the axes of a [m^2]
+  bool use_translation = false;  ///< vision could not see scale: the displacement enters the estimate
+};
+
+/// The motion from a to c of the motions a to b and b to c.
+MotionSummary compose(const MotionSummary& a_b, const MotionSummary& b_c);
+
+/// Relative motion of the body between the last two frames with what is known of it.
+struct RelativeMotion {
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Identity();  ///< as PoseWithCovariance
+};
+
+struct WindowEstimate {
+  bool ok = false;
+  Eigen::Isometry3d T_odom_previous = Eigen::Isometry3d::Identity();  ///< as re-estimated now
+  Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of T_odom_body, as PoseWithCovariance
+  RelativeMotion relative;                 ///< from everything
+  RelativeMotion vision;                   ///< from the images alone (contract 4)
+  double scale_sigma = 0.0;                ///< contract 7
+  ScaleState scale_state = ScaleState::kNotApplicable;
+  double pixel_sigma = 0.0;
+  double parallax_px = 0.0;  ///< since the last keyframe
+  bool keyframe = false;
+  std::vector<TrackId> inliers, outliers;  ///< tracks of the newest frame
+};
+
+/// Keyframes and the two newest frames with their observations; estimates their poses and the points jointly. A point
+/// belongs to the keyframe that saw it first: when that leaves the window the point's information becomes part of a
+/// prior on the remaining poses, and its track starts again, so no observation is used twice.
+class Window {
+ public:
+  explicit Window(const WindowOptions& options);
+
+  /// Starts anew with one keyframe at a known pose.
+  void start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,
+             const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
+  bool empty() const { return states_.empty(); }
+
+  /// Adds the newest frame (inlier observations only) and estimates. `guesses`: candidate motions from the previous
+  /// frame, the best is refined. When it fails (`ok` false) the caller starts the window anew.
+  WindowEstimate add(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam,
+                     const MotionSummary& motion, const std::vector<Eigen::Isometry3d>& guesses);
+
+  /// Turns everything by R (odom axes) about `pivot`: a correction of gravity (contract 5).
+  void rotateAbout(const Eigen::Vector3d& pivot, const Eigen::Matrix3d& R);
+
+  /// Triangulated points in odom with a distance known to better than 20 % [m].
+  std::vector<Eigen::Vector3d> points() const;
+  double pixelSigma() const { return pixel_sigma_; }
+
+ private:
+  struct State {
+    std::int64_t stamp_ns = 0;
+    BundlePose pose;
+    MotionSummary from_previous;
+    bool keyframe = false;
+  };
+
+  void addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
+  void initializeLandmarks();
+  void initializeLandmark(BundleLandmark* landmark) const;
+  double alignNewest(BundlePose* pose) const;
+  void optimize(WindowEstimate* estimate);
+  void classify(WindowEstimate* estimate);
+  bool wantsKeyframe(WindowEstimate* estimate) const;
+  void dropState(int index);
+  void marginalizeOldest();
+  BundleAdjustment makeBundle(std::vector<TrackId>* tracks) const;
+
+  WindowOptions options_;
+  double pixel_sigma_;
+  std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
+  std::map<TrackId, BundleLandmark> landmarks_;
+  PosePrior prior_;
+};
+
+}  // namespace multicam_egomotion

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "multicam_egomotion/geometry/camera_rig.h"
+#include "multicam_egomotion/tracking/frame_set.h"
+#include "multicam_egomotion/tracking/tracked_frame.h"
+
+namespace multicam_egomotion {
+
+struct FeatureTrackerOptions {
+  int features_per_camera = 150;
+  int min_distance_px = 12;                    ///< between new features and the others of the same image
+  int fast_threshold = 10;                     ///< FAST corner threshold [grey levels]
+  int patch_size_px = 15;                      ///< side of the square patch that is tracked, odd, 7 to 21
+  int pyramid_levels = 4;                      ///< 1: full resolution only; 1 to 6
+  double max_forward_backward_error_px = 0.7;  ///< of a patch tracked there and back
+  double max_reference_correction_px = 1.0;    ///< by which alignment to the reference patch may move a feature
+  double max_epipolar_error_px = 1.5;          ///< of matches between cameras
+  double min_distance_m = 0.3;                 ///< nearest point looked for by matching between cameras
+};
+
+/// What happened to the features in the last frame, and faults of the images since the start.
+struct FeatureTrackerCounters {
+  int tracked = 0;                    ///< features carried over from the previous frame
+  int detected = 0;                   ///< new features
+  int lost = 0;                       ///< features that ended
+  int handed_over = 0;                ///< features that left one camera and live on in another
+  int rejected_forward_backward = 0;  ///< temporal tracks that did not come back to where they started
+  int reference_aligned = 0;          ///< tracked features aligned to their reference patch, hence without drift
+  int cross_camera_matches = 0;       ///< observations of features by a second camera
+  int rejected_epipolar = 0;          ///< earlier matches between cameras that failed in this frame
+  std::uint64_t ignored_images = 0;   ///< unknown camera, repeated camera, wrong size or type; since the start
+};
+
+/// Corner features of all cameras of a rig, tracked in time and across overlapping cameras.
+///
+/// A feature belongs to one camera, in which it is tracked from frame to frame by pyramidal Lucas-Kanade (Bouguet 2001)
+/// from a predicted position and then aligned to its reference patch, so that it does not drift; in each frame it is
+/// matched from there into the overlapping cameras. When it leaves its camera it lives on in one of those.
+/// Deterministic; never throws on images.
+class FeatureTracker {
+ public:
+  /// Throws std::invalid_argument (name, found, expected) on options that cannot be.
+  FeatureTracker(const CameraRig& rig, const FeatureTrackerOptions& options);
+  ~FeatureTracker();
+  FeatureTracker(FeatureTracker&&) noexcept;
+  FeatureTracker& operator=(FeatureTracker&&) noexcept;
+
+  /// Image regions to ignore: CV_8UC1 of the camera's size, 0 = ignore; empty: none.
+  /// Throws std::invalid_argument on another size or type or a camera that does not exist.
+  void setMask(int camera, const cv::Mat& mask);
+
+  /// Tracks all features into `frames` and detects new ones where they are missing. A camera without an image loses its
+  /// features. The images are copied.
+  /// `T_prev_cur`: predicted motion, body at this frame in the body at the previous one; identity when unknown.
+  /// `T_body_cam`: pose of each camera of the rig at the time of its own image in the body at the reference stamp.
+  TrackedFrame track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
+                     const std::vector<Eigen::Isometry3d>& T_body_cam);
+
+  /// The newest frame becomes the reference of the patches of all its features.
+  void markKeyframe();
+
+  /// Ends tracks, for example those that the estimation found to be outliers.
+  void remove(const std::vector<TrackId>& tracks);
+
+  /// Forgets all features and images; masks and counters stay, track ids are not used again.
+  void reset();
+
+  const FeatureTrackerCounters& counters() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace multicam_egomotion

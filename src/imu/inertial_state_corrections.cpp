@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/imu/inertial_state.h"
+
+namespace multicam_egomotion {
+namespace {
+
+/// 99.9 % quantile of χ² for 2 and 3 degrees of freedom.
+constexpr double chiSquareGate(int degrees_of_freedom) { return degrees_of_freedom == 2 ? 13.816 : 16.266; }
+
+}  // namespace
+
+void InertialState::ForceWindow::add(const Eigen::Matrix3d& R, const Eigen::Vector3d& force, double dt) {
+  duration_s += dt;
+  sum += dt * (R * force);
+  square_sum += dt * force.squaredNorm();
+  rotation_sum += dt * R;
+}
+
+double InertialState::ForceWindow::spread() const {
+  return std::sqrt(std::max(0.0, square_sum / duration_s - (sum / duration_s).squaredNorm()));
+}
+
+bool InertialState::correctRelativeRotation(const Eigen::Matrix3d& R_1_2, const Eigen::Matrix3d& covariance) {
+  if (!R_1_2.allFinite() || !R_1_2.isUnitary(1e-6)) {
+    ++rotation_counts_.invalid;
+    return false;
+  }
+  const Eigen::Vector3d residual = logSO3(rotationSinceFrame().transpose() * R_1_2);
+  Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+  H.middleCols<3>(kTheta) = R_odom_imu_.transpose();
+  H.middleCols<3>(kFrameTheta) = -R_odom_imu_.transpose();
+  ErrorState widening = ErrorState::Zero();
+  widening.segment<3>(kTheta).setConstant(residual.squaredNorm());
+  widening.segment<3>(kGyroscopeBias).setConstant(options_.gyroscope_bias_sigma * options_.gyroscope_bias_sigma);
+  return correct<3>(residual, H, covariance, &rotation_counts_, widening);
+}
+
+bool InertialState::correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+  H.middleCols<3>(kDisplacement).setIdentity();
+  const Eigen::Vector3d residual = p_1_2 - displacement_;
+  const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
+  return correctMotion(residual, H, covariance, residual.norm() / duration);
+}
+
+bool InertialState::correctVelocity(const Eigen::Vector3d& velocity, const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+  H.middleCols<3>(kVelocity).setIdentity();
+  const Eigen::Vector3d residual = velocity - velocityInImuAxes();
+  return correctMotion(residual, H, covariance, residual.norm());
+}
+
+bool InertialState::correctMotion(const Eigen::Vector3d& residual, const Eigen::Matrix<double, 3, kSize>& H,
+                                  const Eigen::Matrix3d& covariance, double speed_residual) {
+  const double speed_sigma = std::max(speed_residual, options_.initial_velocity_sigma);
+  ErrorState widening = ErrorState::Zero();
+  widening.segment<2>(kTheta).setConstant(std::pow(options_.motion_acceleration_sigma / options_.gravity, 2));
+  widening.segment<3>(kVelocity).setConstant(speed_sigma * speed_sigma);
+  widening.segment<3>(kAccelerometerBias)
+      .setConstant(options_.accelerometer_bias_sigma * options_.accelerometer_bias_sigma);
+  widening.segment<3>(kDisplacement).setConstant(residual.squaredNorm());
+  if (!correct<3>(residual, H, covariance, &velocity_counts_, widening)) {
+    return false;
+  }
+  // A velocity known this well tells more about the vertical than the mean force over the window does.
+  const double velocity_variance = velocityCovarianceInImuAxes().trace() / 3;
+  if (std::sqrt(velocity_variance) < options_.motion_acceleration_sigma * options_.gravity_window_s) {
+    window_ = ForceWindow();
+  }
+  return true;
+}
+
+bool InertialState::correctTilt(const Eigen::Matrix3d& R_world_imu, double sigma) {
+  if (!R_world_imu.allFinite() || !R_world_imu.isUnitary(1e-6) || !(sigma > 0) || !std::isfinite(sigma)) {
+    ++tilt_counts_.invalid;
+    return false;
+  }
+  const Eigen::Vector3d up = R_odom_imu_ * R_world_imu.row(2).transpose();
+  const Eigen::Vector2d residual = shortestArc(up, Eigen::Vector3d::UnitZ()).head<2>();
+  Eigen::Matrix<double, 2, kSize> H = Eigen::Matrix<double, 2, kSize>::Zero();
+  H.middleCols<2>(kTheta).setIdentity();
+  ErrorState widening = ErrorState::Zero();
+  widening.segment<2>(kTheta).setConstant(residual.squaredNorm());
+  return correct<2>(residual, H, sigma * sigma * Eigen::Matrix2d::Identity(), &tilt_counts_, widening);
+}
+
+double InertialState::accelerationSigma(const ForceWindow& window, double floor) const {
+  const double mismatch = window.sum.norm() / window.duration_s - options_.gravity;
+  const double spread = window.spread();
+  return std::sqrt(floor * floor + spread * spread + mismatch * mismatch);
+}
+
+void InertialState::correctVertical(const ForceWindow& window, double acceleration_sigma) {
+  // Mean force = gravity + mean acceleration of the platform, horizontally; the tilt is that of the window's middle,
+  // to which the gyroscope bias carries it.
+  const Eigen::Matrix3d R_mean = window.rotation_sum / window.duration_s;
+  const Eigen::Vector2d residual = -window.sum.head<2>() / window.duration_s;
+  Eigen::Matrix<double, 2, 3> to_tilt;
+  to_tilt << 0, options_.gravity, 0, -options_.gravity, 0, 0;
+  Eigen::Matrix<double, 2, kSize> H = Eigen::Matrix<double, 2, kSize>::Zero();
+  H.middleCols<3>(kTheta) = to_tilt;
+  H.middleCols<3>(kGyroscopeBias) = 0.5 * window.duration_s * to_tilt * R_mean;
+  H.middleCols<3>(kAccelerometerBias) = -R_mean.topRows<2>();
+  CorrectionCounts counts;
+  const double variance = acceleration_sigma * acceleration_sigma;
+  ErrorState widening = ErrorState::Zero();
+  widening.segment<2>(kTheta).setConstant(residual.squaredNorm() / (options_.gravity * options_.gravity));
+  correct<2>(residual, H, variance * Eigen::Matrix2d::Identity(), &counts, widening);
+}
+
+void InertialState::useGravityWindow() {
+  correctVertical(window_, accelerationSigma(window_, options_.motion_acceleration_sigma));
+  window_ = ForceWindow();
+  // Without any velocity its estimate would wander off without bound; the platform's speed does not.
+  const double variance = options_.initial_velocity_sigma * options_.initial_velocity_sigma;
+  if (velocityCovarianceInImuAxes().trace() / 3 > variance) {
+    Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
+    H.middleCols<3>(kVelocity).setIdentity();
+    CorrectionCounts counts;
+    correct<3>(-velocityInImuAxes(), H, variance * Eigen::Matrix3d::Identity(), &counts, ErrorState::Zero());
+  }
+}
+
+template <int Rows>
+bool InertialState::correct(const Eigen::Matrix<double, Rows, 1>& residual, const Eigen::Matrix<double, Rows, kSize>& H,
+                            const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts,
+                            const ErrorState& widening) {
+  using Square = Eigen::Matrix<double, Rows, Rows>;
+  const Square symmetric_noise = 0.5 * (noise + noise.transpose());
+  if (!residual.allFinite() || !noise.allFinite() || Eigen::LLT<Square>(symmetric_noise).info() != Eigen::Success) {
+    ++counts->invalid;
+    return false;
+  }
+  Eigen::LLT<Square> innovation(H * covariance_ * H.transpose() + symmetric_noise);
+  if (innovation.info() != Eigen::Success) {
+    ++counts->invalid;
+    return false;
+  }
+  if (residual.dot(innovation.solve(residual)) > chiSquareGate(Rows)) {
+    ++counts->rejected;
+    if (++counts->consecutive_rejections < options_.rejections_before_recovery) {
+      return false;
+    }
+    ++counts->recoveries;
+    covariance_.diagonal() += widening;
+    innovation.compute(H * covariance_ * H.transpose() + symmetric_noise);
+  }
+  counts->consecutive_rejections = 0;
+  ++counts->accepted;
+
+  const Eigen::Matrix<double, Rows, kSize> gain_transposed = innovation.solve(H * covariance_);
+  const Eigen::Matrix<double, kSize, Rows> gain = gain_transposed.transpose();
+  const Covariance remaining = Covariance::Identity() - gain * H;  // Joseph form
+  covariance_ = (remaining * covariance_ * remaining.transpose()).eval();
+  covariance_ += gain * symmetric_noise * gain.transpose();
+  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  inject(gain * residual);
+  return true;
+}
+
+void InertialState::inject(const ErrorState& error) {
+  const Eigen::Vector3d velocity_imu = velocityInImuAxes() + error.segment<3>(kVelocity);
+  R_odom_imu_ = expSO3(error.segment<3>(kTheta)) * R_odom_imu_;
+  R_odom_frame_ = expSO3(error.segment<3>(kFrameTheta)) * R_odom_frame_;
+  v_odom_ = R_odom_imu_ * velocity_imu;
+  gyroscope_bias_ += error.segment<3>(kGyroscopeBias);
+  accelerometer_bias_ += error.segment<3>(kAccelerometerBias);
+  displacement_ += error.segment<3>(kDisplacement);
+}
+
+template bool InertialState::correct<3>(const Eigen::Matrix<double, 3, 1>&, const Eigen::Matrix<double, 3, kSize>&,
+                                        const Eigen::Matrix3d&, CorrectionCounts*, const ErrorState&);
+
+}  // namespace multicam_egomotion

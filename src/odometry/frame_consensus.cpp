@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "multicam_egomotion/odometry/frame_consensus.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/solvers/four_point_axis.h"
+#include "multicam_egomotion/solvers/four_point_vertical.h"
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr double kAxisSigmas = 20.0;  // the axis is used where the angle exceeds this many sigmas of its error
+
+struct FourPointVertical {
+  static constexpr int kSampleSize = 4;
+  using Prior = VerticalPrior;
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
+    return solveFourPointVertical(sample, prior, {true});
+  }
+};
+
+struct FourPointAxis {
+  static constexpr int kSampleSize = 4;
+  using Prior = AxisPrior;
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
+    return solveFourPointAxis(sample, prior, {true});
+  }
+};
+
+struct Matches {
+  std::vector<CorrespondenceSet::Entry> entries;
+  std::vector<TrackId> tracks;      // by entry
+  std::vector<double> parallax_px;  // by entry; negative between different cameras
+};
+
+// Image scale at an observation [px/rad].
+double pixelsPerRadian(const FeatureObservation& feature) { return feature.to_pixel.norm() / std::sqrt(2.0); }
+
+// All pairs of views of one track at t1 and t2; both frames are sorted by track.
+Matches matchTracks(const PosedFrame& previous, const PosedFrame& newest, const Eigen::Matrix3d& R_f2_f1) {
+  Matches matches;
+  const auto& first = previous.frame.observations;
+  const auto& second = newest.frame.observations;
+  std::size_t begin = 0;
+  for (const FeatureObservation& now : second) {
+    while (begin < first.size() && first[begin].track < now.track) ++begin;
+    for (std::size_t i = begin; i < first.size() && first[i].track == now.track; ++i) {
+      const FeatureObservation& then = first[i];
+      const Eigen::Isometry3d& T1 = previous.T_body_cam[then.camera];
+      const Eigen::Isometry3d& T2 = newest.T_body_cam[now.camera];
+      CorrespondenceSet::Entry entry;
+      entry.rays.first = makeRay(T1.linear() * then.bearing, T1.translation());
+      entry.rays.second = makeRay(T2.linear() * now.bearing, T2.translation());
+      entry.rays.camera1 = then.camera;
+      entry.rays.camera2 = now.camera;
+      entry.pixels_per_radian1 = pixelsPerRadian(then);
+      entry.pixels_per_radian2 = pixelsPerRadian(now);
+      matches.entries.push_back(entry);
+      matches.tracks.push_back(now.track);
+      double parallax = -1.0;
+      if (then.camera == now.camera) {
+        const Eigen::Vector3d expected = T2.linear().transpose() * (R_f2_f1 * entry.rays.first.direction);
+        const double depth = now.bearing.dot(expected);
+        if (depth > 0.1) parallax = (now.to_pixel * expected).norm() / depth;
+      }
+      matches.parallax_px.push_back(parallax);
+    }
+  }
+  return matches;
+}
+
+std::vector<Eigen::Vector3d> centers(const std::vector<Eigen::Isometry3d>& T_body_cam) {
+  std::vector<Eigen::Vector3d> result;
+  for (const Eigen::Isometry3d& T : T_body_cam) result.push_back(T.translation());
+  return result;
+}
+
+}  // namespace
+
+FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newest, const MotionSummary& motion,
+                             const Eigen::Vector3d& up, const std::string& solver,
+                             const RobustEstimatorOptions& options, std::uint64_t seed) {
+  FrameConsensus consensus;
+  const Eigen::Matrix3d R_f2_f1 = motion.T_a_b.linear().transpose();
+  const Matches matches = matchTracks(previous, newest, R_f2_f1);
+  consensus.correspondences = static_cast<int>(matches.entries.size());
+  const CorrespondenceSet set(matches.entries, centers(previous.T_body_cam), centers(newest.T_body_cam));
+
+  // R_a_b Exp(d) transposed is Exp(-d) R_f2_f1, so the covariance is that of the left perturbation.
+  const RotationPrior rotation{R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
+  const Eigen::Vector3d rotation_vector = logSO3(R_f2_f1);
+  const double angle_sigma = std::sqrt(motion.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
+  const bool use_axis =
+      solver == "4pt-axis" || (solver == "auto" && rotation_vector.norm() > kAxisSigmas * angle_sigma);
+  consensus.solver = use_axis ? "4pt-axis" : "4pt-vertical";
+  const RobustEstimate estimated =
+      use_axis ? estimate<FourPointAxis>(set, {rotation_vector}, rotation, options, seed)
+               : estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), rotation, options, seed);
+  consensus.success = estimated.success;
+  consensus.samples = estimated.samples;
+  consensus.inliers = estimated.inlier_count;
+  consensus.T_previous_body.linear() = estimated.R.transpose();
+  consensus.T_previous_body.translation() = -estimated.R.transpose() * estimated.t;
+
+  std::vector<double> parallax;
+  for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
+    if (estimated.success && !estimated.inliers[i]) consensus.outliers.push_back(matches.tracks[i]);
+    if (matches.parallax_px[i] >= 0.0) parallax.push_back(matches.parallax_px[i]);
+  }
+  consensus.outliers.erase(std::unique(consensus.outliers.begin(), consensus.outliers.end()), consensus.outliers.end());
+  if (!parallax.empty()) {
+    std::nth_element(parallax.begin(), parallax.begin() + parallax.size() / 2, parallax.end());
+    consensus.parallax_px = parallax[parallax.size() / 2];
+  }
+  return consensus;
+}
+
+}  // namespace multicam_egomotion

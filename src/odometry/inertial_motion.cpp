@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+
+#include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/motion_model.h"
+
+namespace multicam_egomotion {
+namespace {
+constexpr double kInitializationSpan = 1.0;  // samples before the first frame that count [s]
+}
+
+InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
+                               const ImuBuffer* buffer)
+    : calibration_(calibration), state_(calibration, options), buffer_(buffer) {}
+
+bool InertialMotion::initialize(std::int64_t stamp_ns) {
+  std::vector<ImuSample> samples;
+  buffer_->samplesBetween(stamp_ns - static_cast<std::int64_t>(kInitializationSpan * 1e9), stamp_ns, &samples);
+  if (!state_.initialize(samples)) return false;
+  state_.propagateTo(stamp_ns, *buffer_);
+  state_.markFrame();
+  initialized_ = true;
+  return true;
+}
+
+void InertialMotion::advanceTo(std::int64_t stamp_ns) { state_.propagateTo(stamp_ns, *buffer_); }
+
+MotionSummary InertialMotion::motionSinceFrame() const {
+  Eigen::Isometry3d T_imu1_imu2 = Eigen::Isometry3d::Identity();
+  T_imu1_imu2.linear() = state_.rotationSinceFrame();
+  T_imu1_imu2.translation() = state_.displacementSinceFrame();
+  const Eigen::Matrix3d R_body_imu = calibration_.T_body_imu.linear();
+  MotionSummary motion;
+  motion.T_a_b = bodyRelativePose(calibration_.T_body_imu, T_imu1_imu2);
+  motion.rotation_covariance = R_body_imu * state_.rotationSinceFrameCovariance() * R_body_imu.transpose();
+  motion.translation_covariance = R_body_imu * state_.displacementSinceFrameCovariance() * R_body_imu.transpose();
+  return motion;
+}
+
+void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
+  const Eigen::Isometry3d T_imu1_imu2 = imuRelativePose(calibration_.T_body_imu, vision.T_a_b);
+  const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
+  // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
+  const Eigen::Matrix3d to_second = R_imu_body * vision.T_a_b.linear().transpose();
+  state_.correctRelativeRotation(T_imu1_imu2.linear(),
+                                 to_second * vision.covariance.bottomRightCorner<3, 3>() * to_second.transpose());
+  if (!scale_seen) return;
+  state_.correctDisplacement(T_imu1_imu2.translation(),
+                             R_imu_body * vision.covariance.topLeftCorner<3, 3>() * R_imu_body.transpose());
+}
+
+Eigen::Vector3d InertialMotion::up() const {
+  return calibration_.T_body_imu.linear() * state_.attitude().transpose() * Eigen::Vector3d::UnitZ();
+}
+
+Eigen::Vector3d InertialMotion::upAtFrame() const {
+  return calibration_.T_body_imu.linear() * state_.frameAttitude().transpose() * Eigen::Vector3d::UnitZ();
+}
+
+TwistWithCovariance InertialMotion::twist() const {
+  const Eigen::Matrix3d R_body_imu = calibration_.T_body_imu.linear();
+  TwistWithCovariance twist;
+  twist.angular = R_body_imu * state_.angularVelocity();
+  twist.linear = bodyVelocity(calibration_.T_body_imu, state_.velocityInImuAxes(), state_.angularVelocity());
+  const double density = calibration_.gyroscope_noise_density;
+  const Eigen::Matrix3d rate_covariance =
+      state_.gyroscopeBiasCovariance() + density * density * calibration_.rate_hz * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d arm = skew(calibration_.T_body_imu.translation());
+  twist.covariance.bottomRightCorner<3, 3>() = R_body_imu * rate_covariance * R_body_imu.transpose();
+  twist.covariance.topLeftCorner<3, 3>() = R_body_imu * state_.velocityCovarianceInImuAxes() * R_body_imu.transpose() +
+                                           arm * twist.covariance.bottomRightCorner<3, 3>() * arm.transpose();
+  return twist;
+}
+
+void InertialMotion::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
+  state_.restartAt(stamp_ns, attitude_sigma);
+}
+
+void InertialMotion::reset(bool forget_biases) {
+  initialized_ = false;
+  if (forget_biases) state_.forgetBiases();
+}
+
+}  // namespace multicam_egomotion

@@ -1,0 +1,390 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "multicam_egomotion/odometry/window.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/odometry/window_marginals.h"
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr double kPixelSigmaGain = 0.1;  // share of a frame's measured image noise in the running estimate
+constexpr int kMinLandmarks = 6;         // tracks that the newest frame shares with older ones, below which it fails
+
+BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
+
+Eigen::Isometry3d toIsometry(const BundlePose& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = pose.R;
+  T.translation() = pose.p;
+  return T;
+}
+
+Eigen::Matrix3d informationOf(const Eigen::Matrix3d& covariance) {
+  return covariance.ldlt().solve(Eigen::Matrix3d::Identity());
+}
+
+}  // namespace
+
+MotionSummary compose(const MotionSummary& a_b, const MotionSummary& b_c) {
+  MotionSummary a_c;
+  const Eigen::Matrix3d R_a_b = a_b.T_a_b.linear(), R_b_c = b_c.T_a_b.linear();
+  a_c.T_a_b = a_b.T_a_b * b_c.T_a_b;
+  a_c.rotation_covariance = R_b_c.transpose() * a_b.rotation_covariance * R_b_c + b_c.rotation_covariance;
+  a_c.translation_covariance = a_b.translation_covariance + R_a_b * b_c.translation_covariance * R_a_b.transpose();
+  a_c.use_translation = a_b.use_translation || b_c.use_translation;
+  return a_c;
+}
+
+Window::Window(const WindowOptions& options) : options_(options), pixel_sigma_(options.initial_pixel_sigma) {}
+
+void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,
+                   const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam) {
+  landmarks_.clear();
+  states_.assign(1, State());
+  states_[0].stamp_ns = stamp_ns;
+  states_[0].pose = toBundle(T_odom_body);
+  states_[0].keyframe = true;
+  // Local perturbations: odom-axes covariance turned into body axes.
+  Matrix6d to_local = Matrix6d::Zero();
+  to_local.topLeftCorner<3, 3>() = to_local.bottomRightCorner<3, 3>() = T_odom_body.linear().transpose();
+  prior_.poses = {0};
+  prior_.linearization = {states_[0].pose};
+  prior_.H = (to_local * covariance * to_local.transpose() + 1e-8 * Matrix6d::Identity()).inverse();
+  prior_.b = Eigen::VectorXd::Zero(6);
+  addObservations(frame, T_body_cam);
+}
+
+void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam) {
+  const int newest = static_cast<int>(states_.size()) - 1;
+  const BundlePose& pose = states_[newest].pose;
+  for (const FeatureObservation& feature : frame.observations) {
+    const Eigen::Isometry3d& T = T_body_cam[feature.camera];
+    BundleObservation observation;
+    observation.pose = newest;
+    observation.bearing = T.linear() * feature.bearing;
+    observation.center = T.translation();
+    observation.to_pixel = feature.to_pixel * T.linear().transpose();
+    BundleLandmark& landmark = landmarks_[feature.track];
+    if (landmark.observations.empty()) {
+      landmark.origin = pose.p + pose.R * observation.center;
+      landmark.direction = pose.R * observation.bearing;
+      landmark.inverse_distance = 0.0;
+    }
+    landmark.observations.push_back(observation);
+  }
+}
+
+// Distance of a landmark from its other views by a scan in inverse distance, refined by the joint optimization later.
+void Window::initializeLandmark(BundleLandmark* landmark) const {
+  double best_cost = std::numeric_limits<double>::infinity(), best = 0.0;
+  for (int k = 0; k <= 24; ++k) {
+    const double inverse_distance = k == 0 ? 0.0 : 0.002 * std::pow(1.35, k - 1);  // 0, then 1/500 m to about 1/0.5 m
+    double cost = 0.0;
+    for (const BundleObservation& observation : landmark->observations) {
+      const BundlePose& pose = states_[observation.pose].pose;
+      const Eigen::Vector3d x =
+          pose.R.transpose() * (landmark->direction + inverse_distance * (landmark->origin - pose.p)) -
+          inverse_distance * observation.center;
+      const double depth = observation.bearing.dot(x);
+      cost += depth > 1e-6 ? std::min((observation.to_pixel * x).squaredNorm() / (depth * depth), 1e6) : 1e6;
+    }
+    if (cost < best_cost) {
+      best_cost = cost;
+      best = inverse_distance;
+    }
+  }
+  landmark->inverse_distance = best;
+}
+
+void Window::initializeLandmarks() {
+  for (auto& [track, landmark] : landmarks_) {
+    if (landmark.inverse_distance == 0.0 && landmark.observations.size() >= 2) initializeLandmark(&landmark);
+  }
+}
+
+BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
+  BundleAdjustment bundle;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    bundle.poses.push_back(states_[i].pose);
+    if (i == 0) continue;
+    const MotionSummary& motion = states_[i].from_previous;
+    MotionFactor factor;
+    factor.pose_a = static_cast<int>(i) - 1;
+    factor.pose_b = static_cast<int>(i);
+    factor.R_a_b = motion.T_a_b.linear();
+    factor.rotation_information = informationOf(motion.rotation_covariance);
+    factor.p_b_a = motion.T_a_b.translation();
+    if (motion.use_translation) factor.translation_information = informationOf(motion.translation_covariance);
+    bundle.factors.push_back(factor);
+  }
+  for (const auto& [track, landmark] : landmarks_) {
+    if (landmark.observations.size() < 2) continue;
+    tracks->push_back(track);
+    bundle.landmarks.push_back(landmark);
+  }
+  bundle.prior = prior_;
+  bundle.pixel_sigma = pixel_sigma_;
+  return bundle;
+}
+
+// Motion-only refinement of the newest pose against the landmarks as they are; returns the robust cost.
+double Window::alignNewest(BundlePose* pose) const {
+  const int newest = static_cast<int>(states_.size()) - 1;
+  BundleAdjustment bundle;
+  bundle.poses = {*pose};
+  bundle.pixel_sigma = pixel_sigma_;
+  const double w2 = options_.bundle.robust_width * options_.bundle.robust_width;
+  std::vector<std::pair<const BundleLandmark*, BundleObservation>> views;
+  for (const auto& [track, landmark] : landmarks_) {
+    if (landmark.inverse_distance == 0.0 || landmark.observations.front().pose == newest) continue;
+    for (BundleObservation observation : landmark.observations) {
+      if (observation.pose != newest) continue;
+      observation.pose = 0;
+      views.emplace_back(&landmark, observation);
+    }
+  }
+  const auto cost = [&]() {
+    double sum = 0.0;
+    for (const auto& [landmark, observation] : views) {
+      const double e = bundle.normalizedError(*landmark, observation);
+      sum += 0.5 * w2 * std::log1p((e < 0.0 ? 1e6 : e * e) / w2);
+    }
+    return sum;
+  };
+  double best = cost();
+  for (int iteration = 0; iteration < 5 && views.size() >= 6; ++iteration) {
+    Matrix6d H = 1e-6 * Matrix6d::Identity();
+    Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
+    const BundlePose current = bundle.poses[0];
+    for (const auto& [landmark, observation] : views) {
+      const Eigen::Vector3d from_body =
+          current.R.transpose() * (landmark->direction + landmark->inverse_distance * (landmark->origin - current.p));
+      const Eigen::Vector3d x = from_body - landmark->inverse_distance * observation.center;
+      const double depth = observation.bearing.dot(x);
+      if (depth <= 1e-9) continue;
+      const double scale = 1.0 / (depth * pixel_sigma_);
+      const Eigen::Vector2d r = observation.to_pixel * x * scale;
+      const Eigen::Matrix<double, 2, 3> d_x =
+          observation.to_pixel * scale - r * observation.bearing.transpose() / depth;
+      Eigen::Matrix<double, 2, 6> J;
+      J << -landmark->inverse_distance * d_x, d_x * skew(from_body);
+      const double weight = 1.0 / (1.0 + r.squaredNorm() / w2);
+      H.noalias() += weight * J.transpose() * J;
+      b.noalias() -= weight * J.transpose() * r;
+    }
+    bundle.poses[0] = retract(current, H.ldlt().solve(b));
+    const double new_cost = cost();
+    if (!(new_cost < best)) {
+      bundle.poses[0] = current;
+      break;
+    }
+    const bool converged = best - new_cost < 1e-3 * best;
+    best = new_cost;
+    if (converged) break;
+  }
+  *pose = bundle.poses[0];
+  return best;
+}
+
+WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam,
+                           const MotionSummary& motion, const std::vector<Eigen::Isometry3d>& guesses) {
+  WindowEstimate estimate;
+  int shared = 0;
+  TrackId last = 0;
+  for (const FeatureObservation& feature : frame.observations) {
+    if (feature.track == last) continue;
+    last = feature.track;
+    shared += landmarks_.count(feature.track) ? 1 : 0;
+  }
+  if (shared < kMinLandmarks) return estimate;
+
+  // The frame before the previous one goes unless it was a keyframe.
+  const int previous = static_cast<int>(states_.size()) - 1;
+  if (previous >= 1 && !states_[previous - 1].keyframe) dropState(previous - 1);
+
+  initializeLandmarks();
+  State state;
+  state.stamp_ns = frame.stamp_ns;
+  state.from_previous = motion;
+  const Eigen::Isometry3d T_odom_previous = toIsometry(states_.back().pose);
+  state.pose = toBundle(T_odom_previous * motion.T_a_b);
+  states_.push_back(state);
+  addObservations(frame, T_body_cam);
+
+  double best_cost = std::numeric_limits<double>::infinity();
+  BundlePose best = states_.back().pose;
+  for (const Eigen::Isometry3d& guess : guesses) {
+    BundlePose pose = toBundle(T_odom_previous * guess);
+    const double cost = alignNewest(&pose);
+    if (cost < best_cost) {
+      best_cost = cost;
+      best = pose;
+    }
+  }
+  states_.back().pose = best;
+  initializeLandmarks();
+
+  optimize(&estimate);
+  return estimate;
+}
+
+void Window::optimize(WindowEstimate* estimate) {
+  std::vector<TrackId> tracks;
+  BundleAdjustment bundle = makeBundle(&tracks);
+  const BundleSummary summary = bundle.solve(options_.bundle);
+  if (!summary.finite) return;
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
+  for (std::size_t l = 0; l < tracks.size(); ++l) {
+    BundleLandmark& landmark = landmarks_[tracks[l]];
+    landmark.direction = bundle.landmarks[l].direction;
+    landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
+  }
+  if (summary.degrees_of_freedom > 20.0) {
+    const double ratio = summary.weighted_square_sum / summary.degrees_of_freedom;
+    pixel_sigma_ *= std::sqrt(1.0 - kPixelSigmaGain + kPixelSigmaGain * std::min(ratio, 9.0));
+    pixel_sigma_ = std::clamp(pixel_sigma_, options_.min_pixel_sigma, options_.max_pixel_sigma);
+  }
+  const int newest = static_cast<int>(states_.size()) - 1;
+  estimate->ok = true;
+  estimate->T_odom_previous = toIsometry(states_[newest - 1].pose);
+  estimate->T_odom_body = toIsometry(states_[newest].pose);
+  estimate->pixel_sigma = pixel_sigma_;
+  computeMarginals(&bundle, options_.bundle, estimate);
+  classify(estimate);
+  estimate->keyframe = wantsKeyframe(estimate);
+  if (!estimate->keyframe) return;
+
+  states_.back().keyframe = true;
+  // The previous frame served the estimate between frames; between keyframes it is not needed.
+  if (!states_[newest - 1].keyframe) dropState(newest - 1);
+  if (static_cast<int>(states_.size()) > options_.max_keyframes) marginalizeOldest();
+}
+
+// Splits the tracks of the newest frame by their errors there, and forgets what disagrees.
+void Window::classify(WindowEstimate* estimate) {
+  BundleAdjustment errors;
+  for (const State& state : states_) errors.poses.push_back(state.pose);
+  errors.pixel_sigma = pixel_sigma_;
+  const int newest = static_cast<int>(states_.size()) - 1;
+  for (auto it = landmarks_.begin(); it != landmarks_.end();) {
+    BundleLandmark& landmark = it->second;
+    bool in_newest = false, bad = false;
+    for (const BundleObservation& observation : landmark.observations) {
+      in_newest = in_newest || observation.pose == newest;
+      if (landmark.observations.size() < 2) continue;
+      const double error = errors.normalizedError(landmark, observation);
+      bad = bad || error < 0.0 || error > options_.outlier_sigmas;
+    }
+    if (in_newest) (bad ? estimate->outliers : estimate->inliers).push_back(it->first);
+    it = bad ? landmarks_.erase(it) : std::next(it);
+  }
+}
+
+bool Window::wantsKeyframe(WindowEstimate* estimate) const {
+  const int newest = static_cast<int>(states_.size()) - 1;
+  int keyframe = newest - 1;
+  while (keyframe > 0 && !states_[keyframe].keyframe) --keyframe;
+  const Eigen::Matrix3d R = states_[keyframe].pose.R.transpose() * states_[newest].pose.R;  // newest into keyframe
+  std::vector<double> parallax;
+  int seen = 0;
+  for (const auto& [track, landmark] : landmarks_) {
+    const BundleObservation* then = nullptr;
+    const BundleObservation* now = nullptr;
+    for (const BundleObservation& observation : landmark.observations) {
+      if (observation.pose == newest && !now) now = &observation;
+      if (observation.pose == keyframe && !then) then = &observation;
+    }
+    if (!now) continue;
+    ++seen;
+    if (!then) continue;
+    const Eigen::Vector3d x = R.transpose() * then->bearing;
+    const double depth = now->bearing.dot(x);
+    if (depth > 0.1) parallax.push_back((now->to_pixel * x).norm() / depth);
+  }
+  if (parallax.empty()) return true;
+  const auto middle = parallax.begin() + parallax.size() / 2;
+  std::nth_element(parallax.begin(), middle, parallax.end());
+  estimate->parallax_px = *middle;
+  return *middle > options_.keyframe_parallax_px || parallax.size() < options_.keyframe_min_shared * seen;
+}
+
+// Forgets a state that is no keyframe, with its observations.
+void Window::dropState(int index) {
+  if (index + 1 < static_cast<int>(states_.size()) && index > 0) {
+    states_[index + 1].from_previous = compose(states_[index].from_previous, states_[index + 1].from_previous);
+  }
+  states_.erase(states_.begin() + index);
+  for (auto it = landmarks_.begin(); it != landmarks_.end();) {
+    std::vector<BundleObservation>& views = it->second.observations;
+    views.erase(std::remove_if(views.begin(), views.end(), [&](const auto& view) { return view.pose == index; }),
+                views.end());
+    for (BundleObservation& view : views) view.pose -= view.pose > index ? 1 : 0;
+    it = views.empty() ? landmarks_.erase(it) : std::next(it);
+  }
+  for (int& pose : prior_.poses) pose -= pose > index ? 1 : 0;
+}
+
+// Turns what is known through the oldest keyframe into a prior on the others. The newest state's views stay with their
+// tracks, which start again there.
+void Window::marginalizeOldest() {
+  const int newest = static_cast<int>(states_.size()) - 1;
+  std::vector<TrackId> all;
+  BundleAdjustment bundle = makeBundle(&all);
+  bundle.landmarks.clear();
+  bundle.factors.resize(1);  // from the oldest to the next
+  for (auto& [track, landmark] : landmarks_) {
+    if (landmark.observations.front().pose != 0) continue;
+    BundleLandmark leaving = landmark;
+    auto& old_views = leaving.observations;
+    old_views.erase(
+        std::remove_if(old_views.begin(), old_views.end(), [&](const auto& view) { return view.pose == newest; }),
+        old_views.end());
+    auto& kept = landmark.observations;
+    kept.erase(std::remove_if(kept.begin(), kept.end(), [&](const auto& view) { return view.pose != newest; }),
+               kept.end());
+    if (old_views.back().pose > 0) bundle.landmarks.push_back(leaving);
+  }
+  prior_ = marginalizeFirstPose(&bundle, options_.bundle);
+  dropState(0);
+}
+
+void Window::rotateAbout(const Eigen::Vector3d& pivot, const Eigen::Matrix3d& R) {
+  const auto turn = [&](BundlePose* pose) {
+    pose->p = pivot + R * (pose->p - pivot);
+    pose->R = R * pose->R;
+  };
+  for (State& state : states_) turn(&state.pose);
+  for (BundlePose& pose : prior_.linearization) turn(&pose);
+  for (auto& [track, landmark] : landmarks_) {
+    landmark.origin = pivot + R * (landmark.origin - pivot);
+    landmark.direction = R * landmark.direction;
+  }
+}
+
+std::vector<Eigen::Vector3d> Window::points() const {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& [track, landmark] : landmarks_) {
+    // Parallax that the views have among themselves, against the image noise.
+    if (landmark.observations.size() < 2 || landmark.inverse_distance <= 0.0) continue;
+    double parallax_px = 0.0;
+    const BundlePose& first = states_[landmark.observations.front().pose].pose;
+    const Eigen::Vector3d start = first.p + first.R * landmark.observations.front().center;
+    for (const BundleObservation& view : landmark.observations) {
+      const BundlePose& pose = states_[view.pose].pose;
+      const Eigen::Vector3d baseline = pose.R.transpose() * (pose.p + pose.R * view.center - start);
+      parallax_px = std::max(parallax_px, (view.to_pixel * baseline).norm() * landmark.inverse_distance);
+    }
+    if (parallax_px > 5.0 * pixel_sigma_) {
+      points.push_back(landmark.origin + landmark.direction / landmark.inverse_distance);
+    }
+  }
+  return points;
+}
+
+}  // namespace multicam_egomotion
