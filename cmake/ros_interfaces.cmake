@@ -3,8 +3,6 @@ add_message_files(DIRECTORY msg FILES EgoMotion.msg)
 add_service_files(DIRECTORY srv FILES SetPose.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs features2d video)
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES multicam_egomotion_solvers multicam_egomotion_core multicam_egomotion_ros

@@ -4,7 +4,6 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 layer_sources(ros_sources ros)
 add_library(multicam_egomotion_ros ${ros_sources})
 add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
-target_include_directories(multicam_egomotion_ros PUBLIC ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_INCLUDE_DESTINATION})
 target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})
 target_link_libraries(multicam_egomotion_ros
   PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} PRIVATE ${YAML_CPP_LIBRARIES})
@@ -17,12 +16,14 @@ target_link_libraries(egomotion_node multicam_egomotion_ros)
 
 layer_sources(bag_runner_sources tools/bag_runner)
 add_executable(egomotion_bag src/tools/egomotion_bag.cpp ${bag_runner_sources})
+target_include_directories(egomotion_bag PRIVATE src/tools)
 target_link_libraries(egomotion_bag multicam_egomotion_ros Boost::program_options)
 
 set(ros_tools egomotion_node egomotion_bag)
 if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/src/tools/egomotion_sim.cpp)
   add_executable(egomotion_sim src/tools/egomotion_sim.cpp)
-  target_link_libraries(egomotion_sim multicam_egomotion_simulator multicam_egomotion_ros Boost::program_options)
+  target_include_directories(egomotion_sim SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+  target_link_libraries(egomotion_sim multicam_egomotion_simulator ${catkin_LIBRARIES} Boost::program_options)
   list(APPEND ros_tools egomotion_sim)
 endif()
 
@@ -34,9 +35,12 @@ install(TARGETS ${ros_tools} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATIO
 install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 install(DIRECTORY launch config DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 
-# Scripts run beside the modules they import.
-file(GLOB scripts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/scripts/*.py)
-install(PROGRAMS ${scripts} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+# Scripts stand beside the modules that they import.
+catkin_install_python(PROGRAMS scripts/euroc_to_bag.py scripts/kitti_to_bag.py scripts/evaluate.py
+  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+file(GLOB script_modules CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/scripts/*.py)
+list(FILTER script_modules EXCLUDE REGEX "/(euroc_to_bag|kitti_to_bag|evaluate).py$")
+install(FILES ${script_modules} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(MULTICAM_EGOMOTION_TESTS)
   include(cmake/ros_tests.cmake)

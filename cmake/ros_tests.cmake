@@ -1,1 +1,59 @@
-# ROS tests
+# Unit tests of the ROS layer and the rostests. Registered with ctest itself: catkin's run_tests passes when tests fail.
+enable_testing()
+find_package(GTest REQUIRED)
+if(NOT TARGET tests)
+  add_custom_target(tests)
+endif()
+
+file(GLOB ros_unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_*.cpp)
+add_executable(test_ros_layer EXCLUDE_FROM_ALL ${ros_unit_tests} ${bag_runner_sources})
+target_include_directories(test_ros_layer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src/tools)
+target_link_libraries(test_ros_layer multicam_egomotion_ros Boost::program_options GTest::GTest GTest::Main)
+set_target_properties(test_ros_layer PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+add_test(NAME test_ros_layer COMMAND test_ros_layer WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+add_dependencies(tests test_ros_layer)
+
+# Executables where rostest looks for those of the package.
+foreach(name test_replay test_services)
+  add_executable(${name} EXCLUDE_FROM_ALL test/rostest/${name}.cpp)
+  target_link_libraries(${name} multicam_egomotion_ros GTest::GTest)
+  add_dependencies(tests ${name})
+endforeach()
+add_dependencies(tests multicam_egomotion_nodelet ${ros_tools})
+
+set(run_rostest ${CATKIN_DEVEL_PREFIX}/env.sh python3 ${CMAKE_CURRENT_SOURCE_DIR}/cmake/run_rostest.py)
+set(recordings ${CMAKE_BINARY_DIR}/test/recordings)
+file(MAKE_DIRECTORY ${recordings})
+
+function(add_ros_test name file)
+  add_test(NAME rostest_${name} COMMAND ${run_rostest} ${name} ${CMAKE_CURRENT_SOURCE_DIR}/test/rostest/${file}
+    ${CMAKE_BINARY_DIR}/test/rostest/${name} ${ARGN})
+  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+endfunction()
+
+# A simulated recording, made when the tests run.
+set(simulated ${recordings}/handheld_stereo)
+add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simulated}.bag --duration 8)
+set_tests_properties(recording_simulated PROPERTIES FIXTURES_SETUP simulated TIMEOUT 300)
+add_ros_test(replay_simulated replay.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml max_error:=0.05)
+add_ros_test(topics_only topics_only.test bag:=${simulated}.bag)
+add_ros_test(bad_configuration bad_configuration.test rig:=${simulated}.rig.yaml)
+set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bad_configuration PROPERTIES
+  FIXTURES_REQUIRED simulated)
+
+# A real one, where the data are.
+if(DEFINED ENV{MULTICAM_EGOMOTION_DATA})
+  set(data $ENV{MULTICAM_EGOMOTION_DATA})
+else()
+  get_filename_component(data ${CMAKE_CURRENT_SOURCE_DIR}/../shared/data ABSOLUTE)
+endif()
+set(euroc ${data}/euroc_mh01_excerpt/mav0)
+set(euroc_bag ${recordings}/euroc_mh01)
+add_ros_test(replay_euroc replay.test --needs ${euroc_bag}.bag bag:=${euroc_bag}.bag rig:=${euroc_bag}.rig.yaml
+  max_error:=0.05)
+if(EXISTS ${euroc})
+  add_test(NAME recording_euroc
+    COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/euroc_to_bag.py ${euroc} ${euroc_bag}.bag)
+  set_tests_properties(recording_euroc PROPERTIES FIXTURES_SETUP euroc TIMEOUT 120)
+  set_tests_properties(rostest_replay_euroc PROPERTIES FIXTURES_REQUIRED euroc)
+endif()

@@ -52,14 +52,21 @@ BundlePose retract(const BundlePose& a, const Vector6d& d) {
   return result;
 }
 
-double BundleAdjustment::normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const {
+bool BundleAdjustment::error(const BundleLandmark& landmark, const BundleObservation& observation,
+                             Eigen::Vector2d* error_px) const {
   const BundlePose& pose = poses[observation.pose];
   const Eigen::Vector3d x =
       pose.R.transpose() * (landmark.direction + landmark.inverse_distance * (landmark.origin - pose.p)) -
       landmark.inverse_distance * observation.center;
   const double depth = observation.bearing.dot(x);
-  if (depth <= 1e-9) return -1.0;
-  return (observation.to_pixel * x).norm() / (depth * pixel_sigma);
+  if (depth <= 1e-9) return false;
+  *error_px = observation.to_pixel * x / depth;
+  return true;
+}
+
+double BundleAdjustment::normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const {
+  Eigen::Vector2d error_px;
+  return error(landmark, observation, &error_px) ? error_px.norm() / pixel_sigma : -1.0;
 }
 
 double BundleAdjustment::cost(const BundleOptions& options) const {

@@ -112,7 +112,9 @@ void InertialState::correctVertical(const ForceWindow& window, double accelerati
   const double variance = acceleration_sigma * acceleration_sigma;
   ErrorState widening = ErrorState::Zero();
   widening.segment<2>(kTheta).setConstant(residual.squaredNorm() / (options_.gravity * options_.gravity));
-  correct<2>(residual, H, variance * Eigen::Matrix2d::Identity(), &counts, widening);
+  // The platform's acceleration goes with its attitude (a drone's thrust keeps its place in the body) and would be
+  // taken for an accelerometer bias: the bias is only considered (Schmidt), not learnt here.
+  correct<2>(residual, H, variance * Eigen::Matrix2d::Identity(), &counts, widening, false);
 }
 
 void InertialState::useGravityWindow() {
@@ -124,14 +126,14 @@ void InertialState::useGravityWindow() {
     Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
     H.middleCols<3>(kVelocity).setIdentity();
     CorrectionCounts counts;
-    correct<3>(-velocityInImuAxes(), H, variance * Eigen::Matrix3d::Identity(), &counts, ErrorState::Zero());
+    correct<3>(-velocityInImuAxes(), H, variance * Eigen::Matrix3d::Identity(), &counts, ErrorState::Zero(), false);
   }
 }
 
 template <int Rows>
 bool InertialState::correct(const Eigen::Matrix<double, Rows, 1>& residual, const Eigen::Matrix<double, Rows, kSize>& H,
                             const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts,
-                            const ErrorState& widening) {
+                            const ErrorState& widening, bool learn_accelerometer_bias) {
   using Square = Eigen::Matrix<double, Rows, Rows>;
   const Square symmetric_noise = 0.5 * (noise + noise.transpose());
   if (!residual.allFinite() || !noise.allFinite() || Eigen::LLT<Square>(symmetric_noise).info() != Eigen::Success) {
@@ -156,8 +158,11 @@ bool InertialState::correct(const Eigen::Matrix<double, Rows, 1>& residual, cons
   ++counts->accepted;
 
   const Eigen::Matrix<double, Rows, kSize> gain_transposed = innovation.solve(H * covariance_);
-  const Eigen::Matrix<double, kSize, Rows> gain = gain_transposed.transpose();
-  const Covariance remaining = Covariance::Identity() - gain * H;  // Joseph form
+  Eigen::Matrix<double, kSize, Rows> gain = gain_transposed.transpose();
+  if (!learn_accelerometer_bias) {
+    gain.template middleRows<3>(kAccelerometerBias).setZero();
+  }
+  const Covariance remaining = Covariance::Identity() - gain * H;  // Joseph form, right for any gain
   covariance_ = (remaining * covariance_ * remaining.transpose()).eval();
   covariance_ += gain * symmetric_noise * gain.transpose();
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
@@ -165,10 +170,21 @@ bool InertialState::correct(const Eigen::Matrix<double, Rows, 1>& residual, cons
   return true;
 }
 
+Eigen::Matrix3d InertialState::turnError(const Eigen::Vector3d& theta, int block) {
+  // Tilt first, then yaw, which after a long time without vision may be large: the remaining tilt error turns with it.
+  const Eigen::Matrix3d yaw = expSO3(Eigen::Vector3d(0, 0, theta.z()));
+  covariance_.middleRows<3>(block) = (yaw * covariance_.middleRows<3>(block)).eval();
+  covariance_.middleCols<3>(block) = (covariance_.middleCols<3>(block) * yaw.transpose()).eval();
+  return yaw * expSO3(Eigen::Vector3d(theta.x(), theta.y(), 0));
+}
+
 void InertialState::inject(const ErrorState& error) {
   const Eigen::Vector3d velocity_imu = velocityInImuAxes() + error.segment<3>(kVelocity);
-  R_odom_imu_ = expSO3(error.segment<3>(kTheta)) * R_odom_imu_;
-  R_odom_frame_ = expSO3(error.segment<3>(kFrameTheta)) * R_odom_frame_;
+  const Eigen::Matrix3d correction = turnError(error.segment<3>(kTheta), kTheta);
+  R_odom_imu_ = correction * R_odom_imu_;
+  R_odom_frame_ = turnError(error.segment<3>(kFrameTheta), kFrameTheta) * R_odom_frame_;
+  window_.sum = correction * window_.sum;
+  window_.rotation_sum = correction * window_.rotation_sum;
   v_odom_ = R_odom_imu_ * velocity_imu;
   gyroscope_bias_ += error.segment<3>(kGyroscopeBias);
   accelerometer_bias_ += error.segment<3>(kAccelerometerBias);
@@ -176,6 +192,6 @@ void InertialState::inject(const ErrorState& error) {
 }
 
 template bool InertialState::correct<3>(const Eigen::Matrix<double, 3, 1>&, const Eigen::Matrix<double, 3, kSize>&,
-                                        const Eigen::Matrix3d&, CorrectionCounts*, const ErrorState&);
+                                        const Eigen::Matrix3d&, CorrectionCounts*, const ErrorState&, bool);
 
 }  // namespace multicam_egomotion

@@ -25,6 +25,8 @@ constexpr double kJumpBack = 0.5;              // stamps that go back by more ar
 constexpr double kJumpPositionSigma = 1.0;     // contract 13 [m]
 constexpr double kJumpAttitudeSigma = 0.1745;  // contract 13: 10 deg [rad]
 constexpr double kDefaultPeriod = 0.1;         // between frame sets until it has been measured [s]
+constexpr double kSettledTilt = 0.0175;        // sigma of the vertical from which odom is settled: 1 deg [rad]
+constexpr double kMaxSettling = 2.0;           // settled after that in any case [s]
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -240,6 +242,8 @@ class EgoMotion::Impl {
     } else {
       T_odom_body.linear() = levelAttitude(motion_->up());
     }
+    settled_ = !options_.use_imu;
+    epoch_start_ns_ = motion_->stamp();
     covariance_ = restart_covariance_;
     published_.start(T_odom_body);
     restart_pose_.reset();
@@ -295,17 +299,12 @@ class EgoMotion::Impl {
 
     const double dt = seconds(newest.frame.stamp_ns - last_stamp_ns_);
     published_.follow(estimate.T_odom_previous, estimate.T_odom_body, dt);
-    if (options_.use_imu) {
-      const Eigen::Matrix3d turn =
-          tiltCorrection(published_.pose().linear(), motion_->up(), options_.max_tilt_correction_rate, dt);
-      published_.turn(turn);
-      window_.rotateAbout(estimate.T_odom_body.translation(), turn);
-    }
+    if (options_.use_imu) followVertical(estimate.T_odom_body.translation(), dt);
     covariance_ = estimate.covariance;
     result->T_previous_body.pose = estimate.relative.T_a_b;
     result->T_previous_body.covariance = estimate.relative.covariance;
     result->has_relative_pose = result->has_pose = true;
-    result->status = EgoMotionStatus::kTracking;
+    result->status = settled_ ? EgoMotionStatus::kTracking : EgoMotionStatus::kInitializing;
     result->scale_state = estimate.scale_state;
     result->scale_sigma = estimate.scale_sigma;
     result->pixel_sigma = estimate.pixel_sigma;
@@ -313,6 +312,20 @@ class EgoMotion::Impl {
     result->points = window_.points();
     last_vision_ns_ = newest.frame.stamp_ns;
     return true;
+  }
+
+  // Turns the attitude towards the vertical: at once while it is being found after a start in motion, later slowly
+  // (contract 5).
+  void followVertical(const Eigen::Vector3d& window_position, double dt) {
+    settled_ =
+        settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
+    const Eigen::Matrix3d turn =
+        settled_
+            ? tiltCorrection(published_.pose().linear(), motion_->up(), options_.max_tilt_correction_rate, dt)
+            : Eigen::Quaterniond::FromTwoVectors(published_.pose().linear() * motion_->up(), Eigen::Vector3d::UnitZ())
+                  .toRotationMatrix();
+    published_.turn(turn);
+    window_.rotateAbout(window_position, turn);
   }
 
   // Vision failed: the pose goes on with the predicted motion, the window starts anew from there.
@@ -469,6 +482,8 @@ class EgoMotion::Impl {
   std::optional<Eigen::Isometry3d> restart_pose_;
   Matrix6d restart_covariance_ = Matrix6d::Zero();
   bool scale_seen_ = false;
+  bool settled_ = false;  ///< the vertical has been found since the start of the odom epoch
+  std::int64_t epoch_start_ns_ = 0;
   std::int64_t now_ns_ = 0, last_stamp_ns_ = 0, last_output_ns_ = 0, last_vision_ns_ = 0, last_period_ns_ = 0;
   std::uint32_t odom_epoch_ = 0;
   EgoMotionCounters counters_;

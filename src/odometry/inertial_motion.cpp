@@ -9,7 +9,11 @@
 namespace multicam_egomotion {
 namespace {
 constexpr double kInitializationSpan = 1.0;  // samples before the first frame that count [s]
-}
+// What calibration and synchronization of camera and IMU leave over, beyond the image noise.
+constexpr double kRotationModelSigma = 3e-4;       // [rad]
+constexpr double kDisplacementModelSigma = 5e-4;   // [m]
+constexpr double kDisplacementModelShare = 0.005;  // of the distance
+}  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
                                const ImuBuffer* buffer)
@@ -44,11 +48,16 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
   // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
   const Eigen::Matrix3d to_second = R_imu_body * vision.T_a_b.linear().transpose();
-  state_.correctRelativeRotation(T_imu1_imu2.linear(),
-                                 to_second * vision.covariance.bottomRightCorner<3, 3>() * to_second.transpose());
+  const Eigen::Matrix3d rotation_covariance =
+      to_second * vision.covariance.bottomRightCorner<3, 3>() * to_second.transpose() +
+      kRotationModelSigma * kRotationModelSigma * Eigen::Matrix3d::Identity();
+  state_.correctRelativeRotation(T_imu1_imu2.linear(), rotation_covariance);
   if (!scale_seen) return;
-  state_.correctDisplacement(T_imu1_imu2.translation(),
-                             R_imu_body * vision.covariance.topLeftCorner<3, 3>() * R_imu_body.transpose());
+  const double share = kDisplacementModelShare * T_imu1_imu2.translation().norm();
+  const Eigen::Matrix3d displacement_covariance =
+      R_imu_body * vision.covariance.topLeftCorner<3, 3>() * R_imu_body.transpose() +
+      (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
+  state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
 }
 
 Eigen::Vector3d InertialMotion::up() const {

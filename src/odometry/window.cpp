@@ -67,6 +67,7 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
     const Eigen::Isometry3d& T = T_body_cam[feature.camera];
     BundleObservation observation;
     observation.pose = newest;
+    observation.camera = feature.camera;
     observation.bearing = T.linear() * feature.bearing;
     observation.center = T.translation();
     observation.to_pixel = feature.to_pixel * T.linear().transpose();
@@ -245,17 +246,13 @@ void Window::optimize(WindowEstimate* estimate) {
     landmark.direction = bundle.landmarks[l].direction;
     landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
   }
-  if (summary.degrees_of_freedom > 20.0) {
-    const double ratio = summary.weighted_square_sum / summary.degrees_of_freedom;
-    pixel_sigma_ *= std::sqrt(1.0 - kPixelSigmaGain + kPixelSigmaGain * std::min(ratio, 9.0));
-    pixel_sigma_ = std::clamp(pixel_sigma_, options_.min_pixel_sigma, options_.max_pixel_sigma);
-  }
+  measureNoise(bundle, summary);
   const int newest = static_cast<int>(states_.size()) - 1;
   estimate->ok = true;
   estimate->T_odom_previous = toIsometry(states_[newest - 1].pose);
   estimate->T_odom_body = toIsometry(states_[newest].pose);
   estimate->pixel_sigma = pixel_sigma_;
-  computeMarginals(&bundle, options_.bundle, estimate);
+  computeMarginals(&bundle, options_.bundle, white_share_, estimate);
   classify(estimate);
   estimate->keyframe = wantsKeyframe(estimate);
   if (!estimate->keyframe) return;
@@ -264,6 +261,40 @@ void Window::optimize(WindowEstimate* estimate) {
   // The previous frame served the estimate between frames; between keyframes it is not needed.
   if (!states_[newest - 1].keyframe) dropState(newest - 1);
   if (static_cast<int>(states_.size()) > options_.max_keyframes) marginalizeOldest();
+}
+
+// Image noise from the residuals, and how much of it changes between the last two frames.
+void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& summary) {
+  if (summary.degrees_of_freedom < 20.0) return;
+  const double gain = std::max(kPixelSigmaGain, 1.0 / ++noise_measurements_);
+  const double ratio = std::min(summary.weighted_square_sum / summary.degrees_of_freedom, 9.0);
+  const double measured_sigma = pixel_sigma_ * std::sqrt(ratio);
+  pixel_sigma_ =
+      std::clamp(std::sqrt((1.0 - gain) * pixel_sigma_ * pixel_sigma_ + gain * measured_sigma * measured_sigma),
+                 options_.min_pixel_sigma, options_.max_pixel_sigma);
+
+  const int newest = static_cast<int>(bundle.poses.size()) - 1;
+  const double w2 = std::pow(options_.bundle.robust_width * measured_sigma, 2);
+  double weights = 0.0, squares = 0.0;
+  for (const BundleLandmark& landmark : bundle.landmarks) {
+    for (const BundleObservation& now : landmark.observations) {
+      if (now.pose != newest) continue;
+      for (const BundleObservation& before : landmark.observations) {
+        Eigen::Vector2d error_now, error_before;
+        if (before.pose != newest - 1 || before.camera != now.camera || !bundle.error(landmark, now, &error_now) ||
+            !bundle.error(landmark, before, &error_before)) {
+          continue;
+        }
+        const double square = 0.5 * (error_now - error_before).squaredNorm();
+        const double weight = 1.0 / (1.0 + square / w2);
+        weights += weight;
+        squares += weight * square;
+      }
+    }
+  }
+  if (weights < 10.0) return;
+  const double share = std::clamp(squares / (2.0 * weights * measured_sigma * measured_sigma), 0.01, 1.0);
+  white_share_ += gain * (share - white_share_);
 }
 
 // Splits the tracks of the newest frame by their errors there, and forgets what disagrees.

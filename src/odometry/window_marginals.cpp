@@ -61,7 +61,8 @@ LastTwo solveLastTwo(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, int fix
 
 }  // namespace
 
-void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, WindowEstimate* estimate) {
+void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, double white_share,
+                      WindowEstimate* estimate) {
   Eigen::MatrixXd vision_H, rest_H;
   Eigen::VectorXd vision_b, rest_b;
   bundle->linearize(&vision_H, &vision_b, &rest_H, &rest_b, options);
@@ -72,11 +73,15 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, Wi
 
   // From everything.
   const LastTwo all = solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0);
-  estimate->relative.T_a_b = relativePose(previous, newest);
-  estimate->relative.covariance = J * all.covariance * J.transpose();
   Matrix6d to_odom = Matrix6d::Zero();
   to_odom.topLeftCorner<3, 3>() = to_odom.bottomRightCorner<3, 3>() = newest.R;
   estimate->covariance = to_odom * all.covariance.bottomRightCorner<6, 6>() * to_odom.transpose();
+
+  // Between the last two frames only what changed of the image noise counts.
+  vision_H /= white_share;
+  vision_b /= white_share;
+  estimate->relative.T_a_b = relativePose(previous, newest);
+  estimate->relative.covariance = J * solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance * J.transpose();
 
   // From the images alone.
   const LastTwo vision = solveLastTwo(vision_H, vision_b, 6);

@@ -17,15 +17,16 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kRankTolerance = 1e-6;    // below this F is looked at again with all four rows
-constexpr double kScaleTolerance = 1e-8;   // relative size of a singular value that counts as zero
-constexpr double kNoParallax = 1e-10;      // [rad]
-constexpr double kVanishing = 1e-13;       // polynomial against the row norms: rounding alone
+constexpr double kRankTolerance = 1e-6;   // below this F is looked at again with all four rows
+constexpr double kScaleTolerance = 1e-7;  // sine of the rotation, or relative singular value, without scale
+constexpr double kNoParallax = 1e-10;     // [rad]
+constexpr double kVanishing = 1e-13;      // polynomial against the row norms: rounding alone
 constexpr double kLargestSquare = 1e280;
 
 struct SampleClass {
+  bool central;        // all of one camera pair
   bool three_and_one;  // lanes 0 to 2 share a camera pair, lane 3 is of another
-  bool identity_root;  // R = I, t = 0 is a solution whatever the rays
+  bool same_tilt;      // R1 and R2 are equal
 };
 
 struct AlignedRays {
@@ -34,8 +35,8 @@ struct AlignedRays {
 };
 
 /// Translation where the depths of the origin do not give it: least squares on m · (t - (p2 - R p1)) = 0,
-/// m = R x1 × x2, of all four correspondences. Scale is not observable where constants and normals together have rank 2.
-/// Returns false where not even the direction is determined.
+/// m = R x1 × x2, of all four correspondences. Scale is not observable where constants and normals together have
+/// rank 2. Returns false where not even the direction is determined.
 bool translationFromAllRows(const AlignedRays& rays, double c, double s, double* t, bool& scale_observable) {
   Eigen::Matrix3d R;
   R << c, -s, 0, s, c, 0, 0, 0, 1;
@@ -106,9 +107,7 @@ PoseCandidates<6> solveFourPointAboutZ(const std::array<RayCorrespondence, 4>& s
     return candidates;
   }
   const RayCorrespondence* ordered[4] = {&sample[0], &sample[1], &sample[2], &sample[3]};
-  SampleClass sample_class = {false, frames.same_tilt};
   for (const RayCorrespondence& ray : sample) {
-    sample_class.identity_root &= ray.camera1 == ray.camera2;
     if (options.camera_centers != nullptr && (ray.camera1 < 0 || ray.camera1 >= options.camera_count ||
                                               ray.camera2 < 0 || ray.camera2 >= options.camera_count)) {
       candidates.status = SolverStatus::kInvalidInput;
@@ -124,7 +123,7 @@ PoseCandidates<6> solveFourPointAboutZ(const std::array<RayCorrespondence, 4>& s
   if (same23 && same02) odd = 1;
   if (same23 && same13) odd = 0;
   const bool central = same01 && same23 && same02;
-  sample_class.three_and_one = odd >= 0 && !central;
+  const SampleClass sample_class = {central, odd >= 0 && !central, frames.same_tilt};
   if (sample_class.three_and_one) std::swap(ordered[odd], ordered[3]);
 
   // R = cosθ P + sinθ Q + W
@@ -136,16 +135,14 @@ PoseCandidates<6> solveFourPointAboutZ(const std::array<RayCorrespondence, 4>& s
 
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
   if (processorHasAvx2()) {
-    candidates.status = avx2_instructions::solve(ordered, sample_class, R1.data(), R2.data(), pqw[0].data(), options,
-                                                 candidates);
+    candidates.status =
+        avx2_instructions::solve(ordered, sample_class, R1.data(), R2.data(), pqw[0].data(), options, candidates);
   } else
 #endif
   {
-    candidates.status = build_instructions::solve(ordered, sample_class, R1.data(), R2.data(), pqw[0].data(), options,
-                                                  candidates);
+    candidates.status =
+        build_instructions::solve(ordered, sample_class, R1.data(), R2.data(), pqw[0].data(), options, candidates);
   }
-  if (central && candidates.status == SolverStatus::kOk) candidates.status = SolverStatus::kCentral;
-  if (candidates.status != SolverStatus::kOk) candidates.count = 0;
   return candidates;
 }
 
@@ -153,7 +150,8 @@ std::array<double, 7> fourPointPolynomial(const std::array<RayCorrespondence, 4>
                                           const ZAlignedFrames& frames) {
   const RayCorrespondence* const rays[4] = {&sample[0], &sample[1], &sample[2], &sample[3]};
   build_instructions::AlignedSample aligned;
-  build_instructions::alignSample(rays, frames.R_aligned_body1.data(), frames.R_aligned_body2.data(), aligned);
+  build_instructions::alignSample(rays, frames.R_aligned_body1.data(), frames.R_aligned_body2.data(), false, aligned);
+  build_instructions::expandDeterminant(aligned);
   std::array<double, 7> coefficients;
   std::copy(aligned.coefficients, aligned.coefficients + 7, coefficients.begin());
   return coefficients;

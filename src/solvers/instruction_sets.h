@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The solvers' inner code (*.inc) is compiled for the instruction set of the build and, where the compiler can choose at
-// run time, for AVX2 with FMA as well.
+// The solvers' inner code (*.inc) is compiled for the instruction set of the build and, where the compiler can choose
+// at run time, for AVX2 with FMA as well.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !(defined(__AVX2__) && defined(__FMA__))
 #define MULTICAM_EGOMOTION_DISPATCH_AVX2 1
 #else

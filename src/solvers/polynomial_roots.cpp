@@ -61,12 +61,12 @@ RealRoots findRealRoots(const std::array<double, 7>& coefficients, int degree) {
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
   if (processorHasAvx2()) {
     avx2_instructions::LaneRoots roots;
-    avx2_instructions::realRoots(a, degree, roots);
+    avx2_instructions::realRoots(a, degree, 0.0, true, roots);
     return toRealRoots(roots);
   }
 #endif
   build_instructions::LaneRoots roots;
-  build_instructions::realRoots(a, degree, roots);
+  build_instructions::realRoots(a, degree, 0.0, true, roots);
   return toRealRoots(roots);
 }
 

@@ -9,10 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "multicam_egomotion/tracking/corner_detector.h"
-#include "multicam_egomotion/tracking/cross_camera_matcher.h"
 #include "multicam_egomotion/tracking/feature.h"
-#include "multicam_egomotion/tracking/optical_flow.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -28,54 +25,6 @@ constexpr double kGoodPredictionPx = 4.0;
 constexpr int kFewLevels = 2;
 constexpr std::size_t kMinPredictionErrors = 10;
 
-void require(bool valid, const char* name, double found, const char* expected) {
-  if (!valid) {
-    throw std::invalid_argument(std::string("tracker ") + name + ": found " + std::to_string(found) + ", expected " +
-                                expected);
-  }
-}
-
-void check(const FeatureTrackerOptions& o) {
-  require(o.features_per_camera >= 1 && o.features_per_camera <= 10000, "features_per_camera", o.features_per_camera,
-          "1 to 10000");
-  require(o.min_distance_px >= 1 && o.min_distance_px <= 500, "min_distance_px", o.min_distance_px, "1 to 500");
-  require(o.fast_threshold >= 1 && o.fast_threshold <= 254, "fast_threshold", o.fast_threshold, "1 to 254");
-  require(o.patch_size_px >= 7 && o.patch_size_px <= PatchTemplate::kMaxSize && o.patch_size_px % 2 == 1,
-          "patch_size_px", o.patch_size_px, "odd, 7 to 21");
-  require(o.pyramid_levels >= 1 && o.pyramid_levels <= 6, "pyramid_levels", o.pyramid_levels, "1 to 6");
-  require(o.max_forward_backward_error_px > 0, "max_forward_backward_error_px", o.max_forward_backward_error_px, "> 0");
-  require(o.max_reference_correction_px >= 0, "max_reference_correction_px", o.max_reference_correction_px, ">= 0");
-  require(o.max_epipolar_error_px > 0, "max_epipolar_error_px", o.max_epipolar_error_px, "> 0");
-  require(o.min_distance_m > 0, "min_distance_m", o.min_distance_m, "> 0");
-}
-
-OpticalFlowOptions flowOptions(const FeatureTrackerOptions& options) {
-  OpticalFlowOptions flow;
-  flow.patch_size_px = options.patch_size_px;
-  flow.pyramid_levels = options.pyramid_levels;
-  flow.max_forward_backward_error_px = options.max_forward_backward_error_px;
-  return flow;
-}
-
-CrossCameraOptions crossCameraOptions(const FeatureTrackerOptions& options) {
-  CrossCameraOptions cross;
-  cross.patch_size_px = options.patch_size_px;
-  cross.search_level = std::min(cross.search_level, options.pyramid_levels - 1);
-  cross.min_distance_m = options.min_distance_m;
-  cross.max_epipolar_error_px = options.max_epipolar_error_px;
-  cross.max_reverse_error_px = options.max_forward_backward_error_px;
-  return cross;
-}
-
-CornerDetectorOptions cornerOptions(const FeatureTrackerOptions& options) {
-  CornerDetectorOptions corners;
-  corners.features = options.features_per_camera;
-  corners.min_distance_px = options.min_distance_px;
-  corners.fast_threshold = options.fast_threshold;
-  corners.border_px = options.patch_size_px / 2 + 2;
-  return corners;
-}
-
 }  // namespace
 
 class FeatureTracker::Impl {
@@ -83,21 +32,24 @@ class FeatureTracker::Impl {
   Impl(const CameraRig& rig, const FeatureTrackerOptions& options)
       : rig_(rig),
         options_(options),
-        flow_(flowOptions(options)),
+        flow_(opticalFlowOptions(options)),
         matcher_(rig_, crossCameraOptions(options)),
         border_px_(options.patch_size_px / 2 + 1) {
     check(options);
     for (const RigCamera& camera : rig_.cameras()) {
-      detectors_.emplace_back(cv::Size(camera.model.width(), camera.model.height()), cornerOptions(options));
+      detectors_.emplace_back(cv::Size(camera.model.width(), camera.model.height()), cornerDetectorOptions(options));
     }
     masks_.resize(rig_.size());
     current_.resize(rig_.size());
     previous_.resize(rig_.size());
+    prediction_errors_.resize(rig_.size());
     max_prediction_error_.assign(rig_.size(), std::numeric_limits<double>::infinity());
   }
 
   void setMask(int camera, const cv::Mat& mask) {
-    require(camera >= 0 && camera < rig_.size(), "mask camera", camera, "a camera of the rig");
+    if (camera < 0 || camera >= rig_.size()) {
+      throw std::invalid_argument("mask camera: found " + std::to_string(camera) + ", expected a camera of the rig");
+    }
     const CameraModel& model = rig_.camera(camera).model;
     if (!mask.empty() && (mask.type() != CV_8UC1 || mask.cols != model.width() || mask.rows != model.height())) {
       throw std::invalid_argument("mask of camera " + std::to_string(camera) + ": found " + std::to_string(mask.cols) +
@@ -135,9 +87,9 @@ class FeatureTracker::Impl {
   void markKeyframe() {
     for (Feature& feature : features_) {
       // A patch that still looks the same would only be replaced by one with the error of this alignment.
-      const bool unchanged = feature.reference && feature.reference->failures == 0 &&
-                             (feature.reference->linear - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() <
-                                 kMaxReferenceDeformation;
+      const bool unchanged =
+          feature.reference && feature.reference->failures == 0 &&
+          (feature.reference->linear - Eigen::Matrix2d::Identity()).cwiseAbs().maxCoeff() < kMaxReferenceDeformation;
       if (!unchanged) makeReference(&feature);
     }
   }
@@ -187,6 +139,7 @@ class FeatureTracker::Impl {
 
   void trackInTime() {
     for (Feature& feature : features_) feature.alive = false;
+    for (auto& errors : prediction_errors_) errors.clear();
     std::vector<Feature*> group;
     for (int camera = 0; camera < rig_.size(); ++camera) {
       group.clear();
@@ -203,6 +156,7 @@ class FeatureTracker::Impl {
       }
       counters_.handed_over += trackIn(camera, group);
     }
+    updatePredictionErrors();
   }
 
   // Tracks features of one camera from the previous frame and makes it their owner; returns how many succeeded.
@@ -234,7 +188,6 @@ class FeatureTracker::Impl {
     // Alignment to the reference vouches for a track; only without it the way back is worth its time.
     std::vector<Feature*> unaligned;
     std::vector<cv::Point2f> unaligned_origins, unaligned_points;
-    std::vector<float> prediction_errors;
     int tracked = 0;
     for (std::size_t i = 0; i < group.size(); ++i) {
       if (!found_[i]) continue;
@@ -246,7 +199,7 @@ class FeatureTracker::Impl {
         unaligned_origins.push_back(origins_[i]);
         unaligned_points.push_back(flowed_[i]);
       } else if (advance(camera, pixel, T_cur_prev, &feature)) {
-        prediction_errors.push_back(static_cast<float>(cv::norm(flowed_[i] - guesses_[i])));
+        prediction_errors_[camera].push_back(static_cast<float>(cv::norm(flowed_[i] - guesses_[i])));
         ++tracked;
       }
     }
@@ -260,9 +213,6 @@ class FeatureTracker::Impl {
         ++tracked;
       }
     }
-    if (levels == flow_.pyramid_levels || !prediction_errors.empty()) {
-      updatePredictionError(camera, &prediction_errors);
-    }
     return tracked;
   }
 
@@ -272,9 +222,8 @@ class FeatureTracker::Impl {
     const ImagePoint& point = feature.points[camera];
     const double rho = feature.owner == camera ? std::max(0.0, feature.inverse_distance) : 0.0;
     Eigen::Vector2d pixel;
-    const bool visible =
-        model.project(T_cur_prev.linear() * point.bearing + rho * T_cur_prev.translation(), &pixel) &&
-        model.contains(pixel);
+    const bool visible = model.project(T_cur_prev.linear() * point.bearing + rho * T_cur_prev.translation(), &pixel) &&
+                         model.contains(pixel);
     return visible ? pixel : point.pixel;
   }
 
@@ -285,8 +234,8 @@ class FeatureTracker::Impl {
     if (feature->owner != camera) {
       feature->inverse_distance = -1.0;
     } else if (feature->inverse_distance > 0) {
-      const Eigen::Vector3d p = T_cur_prev.linear() * feature->points[camera].bearing / feature->inverse_distance +
-                                T_cur_prev.translation();
+      const Eigen::Vector3d p =
+          T_cur_prev.linear() * feature->points[camera].bearing / feature->inverse_distance + T_cur_prev.translation();
       feature->inverse_distance = 1.0 / std::max(options_.min_distance_m, p.norm());
     }
     feature->owner = camera;
@@ -296,14 +245,15 @@ class FeatureTracker::Impl {
     return true;
   }
 
-  void updatePredictionError(int camera, std::vector<float>* errors) {
-    if (errors->size() < kMinPredictionErrors) {
+  void updatePredictionErrors() {
+    for (int camera = 0; camera < rig_.size(); ++camera) {
+      std::vector<float>& errors = prediction_errors_[camera];
       max_prediction_error_[camera] = std::numeric_limits<double>::infinity();
-      return;
+      if (errors.size() < kMinPredictionErrors) continue;
+      const auto rank = errors.begin() + errors.size() * 9 / 10;
+      std::nth_element(errors.begin(), rank, errors.end());
+      max_prediction_error_[camera] = *rank;
     }
-    const auto rank = errors->begin() + errors->size() * 9 / 10;
-    std::nth_element(errors->begin(), rank, errors->end());
-    max_prediction_error_[camera] = *rank;
   }
 
   bool alignToReference(int camera, Feature* feature, Eigen::Vector2d* pixel) {
@@ -436,6 +386,7 @@ class FeatureTracker::Impl {
 
   // Error [px] that 9 of 10 predictions of the last frame stayed within, by camera.
   std::vector<double> max_prediction_error_;
+  std::vector<std::vector<float>> prediction_errors_;
   std::vector<cv::Point2f> origins_, guesses_, flowed_;
   std::vector<unsigned char> found_;
 };

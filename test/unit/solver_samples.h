@@ -55,9 +55,9 @@ class SampleSimulator {
 
   /// Rays and priors of the motion already in `s`.
   void observe(SampleKind kind, SimulatedSample& s) {
-    static constexpr int kPairs[6][4][2] = {
-        {{0, 0}, {1, 1}, {0, 0}, {1, 1}}, {{0, 0}, {0, 0}, {1, 1}, {0, 0}}, {{0, 0}, {1, 1}, {2, 2}, {0, 0}},
-        {{0, 0}, {1, 1}, {2, 2}, {3, 3}}, {{0, 1}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1}, {0, 1}, {0, 1}, {0, 1}}};
+    static constexpr int kPairs[6][4][2] = {{{0, 0}, {1, 1}, {0, 0}, {1, 1}}, {{0, 0}, {0, 0}, {1, 1}, {0, 0}},
+                                            {{0, 0}, {1, 1}, {2, 2}, {0, 0}}, {{0, 0}, {1, 1}, {2, 2}, {3, 3}},
+                                            {{0, 1}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1}, {0, 1}, {0, 1}, {0, 1}}};
     s.centers[0] = uniformVector(0.5);
     s.centers[1] = s.centers[0] + direction();
     s.centers[2] = uniformVector(1);

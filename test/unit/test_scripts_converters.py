@@ -1,12 +1,7 @@
 # SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of the bag converters, on small made-up recordings and, where there are any, on real ones.
+"""Tests of the bag converters on small made-up recordings; test_scripts_real_data.py has those on real ones."""
 
-The real-data tests look for MULTICAM_EGOMOTION_DATA or ../shared/data beside the package and skip where it is missing.
-"""
-
-import os
-import pathlib
 import unittest
 
 import numpy as np
@@ -14,7 +9,7 @@ import rosbag
 import yaml
 from PIL import Image
 
-from scripts_test_case import EPOCH_NS, PACKAGE, TemporaryDirectoryTest, run, winding_trajectory
+from scripts_test_case import EPOCH_NS, TemporaryDirectoryTest, run, winding_trajectory
 
 import euroc_to_bag
 import kitti_odometry
@@ -23,16 +18,7 @@ import kitti_to_bag
 import rotations
 import trajectory_errors
 from smoothing_spline import GRAVITY, SmoothTrajectory
-from trajectory_io import NS, read_kitti, read_tum
-
-DATA = pathlib.Path(os.environ.get("MULTICAM_EGOMOTION_DATA", PACKAGE.parent / "shared" / "data"))
-
-
-def real_data(folder):
-    """The path of a folder of real recordings, or a skip that names it."""
-    if not (DATA / folder).is_dir():
-        raise unittest.SkipTest(f"real data folder {folder} not found (MULTICAM_EGOMOTION_DATA)")
-    return DATA / folder
+from trajectory_io import NS, read_tum
 
 
 def write_image(path, width=32, height=24, colour=False):
@@ -288,36 +274,3 @@ class KittiRawToBagTest(ConverterTest):
         self.assert_fails_naming("oxts/timestamps.txt", main=main, arguments=arguments)
         (drive.parent / "calib_imu_to_velo.txt").unlink()
         self.assert_fails_naming("calib_imu_to_velo.txt", main=main, arguments=arguments)
-
-
-class RealDataTest(ConverterTest):
-    def counts(self):
-        with rosbag.Bag(str(self.bag)) as bag:
-            return {topic: info.message_count for topic, info in bag.get_type_and_topic_info().topics.items()}
-
-    def test_euroc(self):
-        self.assertEqual(run(euroc_to_bag.main, real_data("euroc_mh01_excerpt") / "mav0", self.bag)[0], 0)
-        counts = self.counts()
-        self.assertEqual(counts["/cam0/image_raw"], counts["/cam1/image_raw"])
-        self.assertGreater(counts["/imu"], 8 * counts["/cam0/image_raw"])
-        self.assertGreater(len(read_tum(self.dir / "out.groundtruth.tum")), 1000)
-
-    def test_kitti_odometry(self):
-        root = real_data("kitti_odometry_excerpt")
-        poses = root / "poses" / "03.txt"
-        self.assertEqual(run(kitti_to_bag.main, root / "sequences" / "03", self.bag, "--poses", poses)[0], 0)
-        self.assertEqual(self.counts()["/cam1/image_raw"], len(read_kitti(poses)))
-
-    def test_kitti_derived_imu_is_plausible(self):
-        root = real_data("kitti_odometry_excerpt")
-        stamps = kitti_odometry.read_stamps(root / "sequences" / "03" / "times.txt")
-        truth = kitti_odometry.read_body_poses(root / "poses" / "03.txt", stamps, "times.txt")
-        imu = kitti_odometry.derive_imu(truth, seed=1, noise=0.0)
-        self.assertLess(np.abs(imu.specific_forces - [0.0, 0.0, GRAVITY]).max(), 5.0)
-        self.assertLess(np.degrees(np.abs(imu.angular_rates)).max(), 45.0)
-
-    def test_kitti_raw_with_four_cameras(self):
-        root = real_data("kitti_raw_4cam")
-        drive = sorted(root.glob("kitti_raw/*/*_sync"))[0]
-        self.assertEqual(run(kitti_to_bag.main, "--raw", drive, self.bag, "--cameras", "0,1,2,3")[0], 0)
-        self.assertEqual([self.counts()[f"/cam{i}/image_raw"] for i in range(4)], [10] * 4)

@@ -16,6 +16,7 @@ struct BundlePose {
 /// One camera's view of a landmark, expressed in body axes so that the cameras need not appear here.
 struct BundleObservation {
   int pose = 0;                          ///< index into the poses
+  int camera = 0;                        ///< index in the rig
   Eigen::Vector3d bearing;               ///< unit, body axes
   Eigen::Vector3d center;                ///< camera centre in the body frame at the reference stamp [m]
   Eigen::Matrix<double, 2, 3> to_pixel;  ///< pixel error of a predicted point x (body axes, from the centre) is
@@ -80,7 +81,9 @@ class BundleAdjustment {
   void linearize(Eigen::MatrixXd* vision_H, Eigen::VectorXd* vision_b, Eigen::MatrixXd* rest_H, Eigen::VectorXd* rest_b,
                  const BundleOptions& options, const std::vector<char>* use = nullptr);
 
-  /// Pixel error of an observation in image sigmas; negative when the point is behind the camera.
+  /// Pixel error of an observation [px]; false when the point is behind the camera.
+  bool error(const BundleLandmark& landmark, const BundleObservation& observation, Eigen::Vector2d* error_px) const;
+  /// Its norm in image sigmas; negative when the point is behind the camera.
   double normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const;
 
  private:

@@ -165,7 +165,10 @@ class InertialState {
                      const Eigen::Matrix3d& covariance, double speed_residual);
   template <int Rows>
   bool correct(const Eigen::Matrix<double, Rows, 1>& residual, const Eigen::Matrix<double, Rows, kSize>& H,
-               const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts, const ErrorState& widening);
+               const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts, const ErrorState& widening,
+               bool learn_accelerometer_bias = true);
+  /// Rotation to apply for the attitude error θ; turns the covariance of that block into the new axes.
+  Eigen::Matrix3d turnError(const Eigen::Vector3d& theta, int block);
   void inject(const ErrorState& error);
 
   InertialStateOptions options_;

@@ -27,7 +27,7 @@ class PublishedPose {
 };
 
 /// Rotation in odom axes that takes the vertical `up` (body axes) of a body with attitude R_odom_body towards z: the
-/// error low-pass filtered over half a second, at most `max_rate` [rad/s] for `dt` [s].
+/// error low-pass filtered over two seconds, at most `max_rate` [rad/s] for `dt` [s].
 Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double max_rate,
                                double dt);
 

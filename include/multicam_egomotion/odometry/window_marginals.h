@@ -8,8 +8,10 @@
 namespace multicam_egomotion {
 
 /// Covariances of a solved window whose last two poses are the previous and the newest frame: absolute, relative (from
-/// everything and from the images alone), and what vision sees of the scale (contracts 4 and 7).
-void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, WindowEstimate* estimate);
+/// everything and from the images alone), and what vision sees of the scale (contracts 4 and 7). `white_share`: part of
+/// the image noise's variance that counts between two frames (Window::white_share_).
+void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, double white_share,
+                      WindowEstimate* estimate);
 
 /// Prior on poses 1.. (numbered as before) that holds all information of `bundle` once pose 0 and the landmarks are
 /// gone.

@@ -8,7 +8,7 @@ namespace multicam_egomotion {
 
 /// Real roots of p(s) = Σ coefficients[k] s^k as points of the projective line: s = x, or s = 1 / x where `reciprocal`.
 /// |x| ≤ 1, so roots near and at infinity are as exact as those near zero. A root that is double to rounding appears
-/// once. Order is not by size.
+/// once or twice (at s = ±1 exactly it may be missed). Order is not by size.
 struct RealRoots {
   std::array<double, 6> x;
   std::array<bool, 6> reciprocal;

@@ -9,22 +9,11 @@
 #include <vector>
 
 #include "multicam_egomotion/geometry/camera_rig.h"
+#include "multicam_egomotion/tracking/feature_tracker_options.h"
 #include "multicam_egomotion/tracking/frame_set.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
-
-struct FeatureTrackerOptions {
-  int features_per_camera = 150;
-  int min_distance_px = 12;                    ///< between new features and the others of the same image
-  int fast_threshold = 10;                     ///< FAST corner threshold [grey levels]
-  int patch_size_px = 15;                      ///< side of the square patch that is tracked, odd, 7 to 21
-  int pyramid_levels = 4;                      ///< 1: full resolution only; 1 to 6
-  double max_forward_backward_error_px = 0.7;  ///< of a patch tracked there and back
-  double max_reference_correction_px = 1.0;    ///< by which alignment to the reference patch may move a feature
-  double max_epipolar_error_px = 1.5;          ///< of matches between cameras
-  double min_distance_m = 0.3;                 ///< nearest point looked for by matching between cameras
-};
 
 /// What happened to the features in the last frame, and faults of the images since the start.
 struct FeatureTrackerCounters {

@@ -20,7 +20,7 @@ struct PatchAlignmentOptions {
   int max_iterations = 10;
   double epsilon_px = 0.01;      ///< stops when an iteration moves the patch less
   double max_shift_px = 3.0;     ///< from the initial guess; further away is a failure
-  double min_correlation = 0.7;  ///< zero-mean normalized cross-correlation at the result
+  double min_correlation = 0.8;  ///< zero-mean normalized cross-correlation at the result
 };
 
 /// Square grey patch prepared for sub-pixel alignment by inverse-compositional Gauss-Newton (Baker and Matthews,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/planar_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>

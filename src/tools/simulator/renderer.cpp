@@ -99,8 +99,7 @@ void Renderer::castTileRow(const Scene& scene, int tile_y, Shot* shot) const {
       for (int x = tile_x * kTile; x < std::min(width_, (tile_x + 1) * kTile); ++x) {
         const PixelRay& ray = rays_[y * width_ + x];
         if (ray.bearing.isZero()) continue;
-        shot->hits[y * width_ + x] =
-            scene.castRay(shot->origin, shot->R_world_cam * ray.bearing.cast<double>(), boxes);
+        shot->hits[y * width_ + x] = scene.castRay(shot->origin, shot->R_world_cam * ray.bearing.cast<double>(), boxes);
       }
     }
   }
@@ -128,9 +127,9 @@ void Renderer::shadeRow(const Scene& scene, int y, Shot* shot) const {
     const Eigen::Vector3d d_u = shot->R_world_cam * ray.d_u.cast<double>();
     const Eigen::Vector3d d_v = shot->R_world_cam * ray.d_v.cast<double>();
     const Eigen::Vector3d along = direction / hit.normal.dot(direction);
-    row[x] = scene.shade(hit, shot->origin + hit.distance * direction,
-                         hit.distance * (d_u - along * hit.normal.dot(d_u)),
-                         hit.distance * (d_v - along * hit.normal.dot(d_v)));
+    row[x] =
+        scene.shade(hit, shot->origin + hit.distance * direction, hit.distance * (d_u - along * hit.normal.dot(d_u)),
+                    hit.distance * (d_v - along * hit.normal.dot(d_v)));
   }
 }
 
@@ -146,9 +145,9 @@ float Renderer::supersample(const Scene& scene, const PixelRay& ray, const Shot&
       const Eigen::Vector3d direction = (center + (j - middle) * d_u + (i - middle) * d_v).normalized();
       const SceneHit hit = scene.castRay(shot.origin, direction, boxes);
       const Eigen::Vector3d along = direction / hit.normal.dot(direction);
-      sum += scene.shade(hit, shot.origin + hit.distance * direction,
-                         hit.distance * (d_u - along * hit.normal.dot(d_u)),
-                         hit.distance * (d_v - along * hit.normal.dot(d_v)));
+      sum +=
+          scene.shade(hit, shot.origin + hit.distance * direction, hit.distance * (d_u - along * hit.normal.dot(d_u)),
+                      hit.distance * (d_v - along * hit.normal.dot(d_v)));
     }
   }
   return sum / (kSupersamples * kSupersamples);

@@ -15,8 +15,10 @@ TimeJet wave(const TimeJet& t, double amplitude, double frequency_hz, double pha
   return amplitude * sin(t * (2.0 * M_PI * frequency_hz) + 2.0 * M_PI * phase);
 }
 
-/// Distance travelled at `speed` between two moments, with smooth starts and stops of `ramp` seconds.
+/// Distance travelled at `speed` between two moments, with smooth starts and stops of `ramp` seconds; exactly constant
+/// before and after.
 TimeJet drive(const TimeJet& t, double from, double to, double ramp, double speed) {
+  if (t.value >= to + ramp) return {(to - from) * speed};
   const TimeJet start = smoothRamp((t - from) * (1.0 / ramp)), stop = smoothRamp((t - to) * (1.0 / ramp));
   return (start - stop) * (ramp * speed);
 }

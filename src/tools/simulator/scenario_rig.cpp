@@ -78,8 +78,8 @@ RigDescription carRig() {
                  camera(1, radtan, pose(lookTowards(0.5 * M_PI, 0.12, 0.02), {1.3, 0.85, 1.0})),
                  camera(2, rational, pose(lookTowards(M_PI, 0.08), {-0.6, -0.03, 1.1})),
                  camera(3, radtan, pose(lookTowards(-0.5 * M_PI, 0.11, -0.02), {1.3, -0.85, 1.0}))};
-  rig.imu = industrialImu(pose(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-                               {0.08, -0.05, 0.10}));
+  rig.imu = industrialImu(
+      pose(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {0.08, -0.05, 0.10}));
   return rig;
 }
 
@@ -91,8 +91,8 @@ RigDescription droneRig() {
   RigDescription rig;
   rig.cameras = {camera(0, fisheye, pose(lookTowards(0.0, 0.2), {0.15, 0.01, 0.0})),
                  camera(1, other, pose(lookTowards(0.0, 1.4), {-0.09, -0.01, -0.07}))};
-  rig.imu = industrialImu(pose(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix(),
-                               {-0.04, 0.02, 0.05}));
+  rig.imu =
+      industrialImu(pose(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix(), {-0.04, 0.02, 0.05}));
   return rig;
 }
 

@@ -12,10 +12,10 @@ namespace multicam_egomotion {
 
 /// A hall or yard about a trajectory, with random boxes that stay clear of it.
 struct SceneDescription {
-  double margin;       ///< from the trajectory to the walls [m]
-  double height;       ///< of the walls [m]
-  double floor;        ///< height of the floor [m]
-  double box_density;  ///< boxes per square metre of floor
+  double margin;              ///< from the trajectory to the walls [m]
+  double height;              ///< of the walls [m]
+  double floor;               ///< height of the floor [m]
+  double box_density;         ///< boxes per square metre of floor
   double min_side, max_side;  ///< of a box [m]
   double clearance;           ///< horizontal distance of the boxes from the trajectory, at least [m]
   bool open_sky;

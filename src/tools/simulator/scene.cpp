@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -61,8 +61,8 @@ std::vector<SimulatedImu> Simulator::imu() const {
     ImuSample& sample = simulated.sample;
     sample.stamp_ns = first + std::llround(i * 1e9 / options.imu_rate_hz);
     const BodyState state = stateAt(sample.stamp_ns);
-    const Eigen::Vector3d force = state.T_world_body.linear().transpose() *
-                                  (state.accelerationOf(imu.T_body_imu.translation()) - gravity);
+    const Eigen::Vector3d force =
+        state.T_world_body.linear().transpose() * (state.accelerationOf(imu.T_body_imu.translation()) - gravity);
     sample.angular_velocity = R_imu_body * state.angular_velocity + gyroscope_bias +
                               imu.gyroscope_noise_density * density_to_sample * random.gaussian3();
     sample.linear_acceleration = R_imu_body * force + accelerometer_bias +
@@ -88,8 +88,8 @@ FrameSet Simulator::renderFrame(int frame, int threads) const {
   for (int camera = 0; camera < cameras; ++camera) {
     const std::uint64_t stream = kFirstImageStream + static_cast<std::uint64_t>(frame) * cameras + camera;
     const cv::Mat image = renderImage(camera, T_world_body, threads);
-    set.images.push_back({camera, set.stamp_ns,
-                          addImageNoise(image, scenario_.options.image_noise, scenario_.options.seed, stream)});
+    set.images.push_back(
+        {camera, set.stamp_ns, addImageNoise(image, scenario_.options.image_noise, scenario_.options.seed, stream)});
   }
   return set;
 }

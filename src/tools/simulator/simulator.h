@@ -23,8 +23,8 @@ struct SimulatedImu {
 /// whatever the number of threads.
 class Simulator {
  public:
-  static constexpr double kGravity = 9.81;        ///< [m/s^2], along -z of the world
-  static constexpr double kImuLead = 0.5;         ///< the IMU starts so long before the first image [s]
+  static constexpr double kGravity = 9.81;  ///< [m/s^2], along -z of the world
+  static constexpr double kImuLead = 0.5;   ///< the IMU starts so long before the first image [s]
   static constexpr std::int64_t kFirstStamp = 1600000000000000000;  ///< of the first image [ns]
 
   explicit Simulator(const Scenario& scenario);

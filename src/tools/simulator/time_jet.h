@@ -33,12 +33,8 @@ inline TimeJet operator*(const TimeJet& a, const TimeJet& b) {
 inline TimeJet compose(const TimeJet& x, double f, double f1, double f2) {
   return {f, f1 * x.rate, f2 * x.rate * x.rate + f1 * x.acceleration};
 }
-inline TimeJet sin(const TimeJet& x) {
-  return compose(x, std::sin(x.value), std::cos(x.value), -std::sin(x.value));
-}
-inline TimeJet cos(const TimeJet& x) {
-  return compose(x, std::cos(x.value), -std::sin(x.value), -std::cos(x.value));
-}
+inline TimeJet sin(const TimeJet& x) { return compose(x, std::sin(x.value), std::cos(x.value), -std::sin(x.value)); }
+inline TimeJet cos(const TimeJet& x) { return compose(x, std::cos(x.value), -std::sin(x.value), -std::cos(x.value)); }
 
 /// Smooth step from 0 (x <= 0) to 1 (x >= 1), three continuous derivatives.
 inline TimeJet smoothStep(const TimeJet& x) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/trajectory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -37,8 +38,8 @@ Eigen::Vector3d vee(const Eigen::Matrix3d& m) {
 }  // namespace
 
 Eigen::Vector3d BodyState::accelerationOf(const Eigen::Vector3d& point) const {
-  return acceleration + T_world_body.linear() * (angular_acceleration.cross(point) +
-                                                 angular_velocity.cross(angular_velocity.cross(point)));
+  return acceleration + T_world_body.linear() *
+                            (angular_acceleration.cross(point) + angular_velocity.cross(angular_velocity.cross(point)));
 }
 
 Trajectory::Trajectory(Motion motion, const Eigen::Matrix3d& R_motion_body)

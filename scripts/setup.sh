@@ -1,0 +1,58 @@
+#!/bin/bash
+# SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs with apt what building, testing and the demo need and what is missing; does nothing when all is there.
+# Debian 12 has ROS 1 in its own archive; on Ubuntu 20.04, ROS Noetic's packages are used (/opt/ros/noetic).
+set -euo pipefail
+export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+
+packages=(
+  # build
+  g++ make cmake ccache libboost-program-options-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
+  # scripts
+  python3 python3-matplotlib python3-numpy python3-pil python3-yaml
+  # tests
+  clang-format catkin-lint libbenchmark-dev libgtest-dev
+  # pictures of rviz without a screen
+  imagemagick libgl1-mesa-dri xvfb
+)
+if [[ -d /opt/ros/noetic ]]; then
+  for name in catkin cv-bridge diagnostic-updater geometry-msgs image-transport message-generation message-runtime \
+    nav-msgs nodelet pluginlib rosbag rosbash roscpp roslaunch rosnode rosparam rospy rosservice rostest rviz sensor-msgs \
+    std-msgs std-srvs tf2 tf2-eigen tf2-msgs tf2-ros; do
+    packages+=("ros-noetic-$name")
+  done
+else
+  packages+=(
+    catkin libcv-bridge-dev libdiagnostic-updater-dev libgeometry-msgs-dev libimage-transport-dev libnav-msgs-dev
+    libnodeletlib-dev libnodeletlib-tools librosbag-dev libroscpp-dev librostest-dev libsensor-msgs-dev
+    libstd-msgs-dev libstd-srvs-dev libtf2-dev libtf2-eigen-dev libtf2-msgs-dev libtf2-ros-dev pluginlib-dev
+    python3-diagnostic-msgs python3-genpy python3-geometry-msgs python3-nav-msgs python3-rosbag python3-roslaunch
+    python3-rosnode python3-rosparam python3-rospy python3-rosservice python3-rostest python3-sensor-msgs
+    python3-std-srvs ros-geometry-msgs ros-message-generation ros-message-runtime ros-std-msgs rosbash rospack-tools
+    rviz
+  )
+fi
+
+installed=$(dpkg-query -W -f='${binary:Package} ${db:Status-Status}\n' 2>/dev/null | sed -n 's/\(:[^ ]*\)\? installed$//p')
+mapfile -t missing < <(printf '%s\n' "${packages[@]}" | grep -vxF -f <(printf '%s\n' "$installed") || true)
+if [[ ${#missing[@]} -eq 0 ]]; then
+  exit 0
+fi
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "setup.sh: found no sudo, expected it or root to install: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "Installing ${missing[*]}"
+install=(env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}")
+# The package lists are fetched only where they are absent or too old to install from.
+known=$(apt-cache policy "${missing[@]}" 2>/dev/null | grep -c '^  Candidate: [^(]' || true)
+if [[ $known -lt ${#missing[@]} ]] || ! "${as_root[@]}" "${install[@]}"; then
+  "${as_root[@]}" apt-get update
+  "${as_root[@]}" "${install[@]}"
+fi

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "multicam_egomotion/ros/data_clock.h"
+#include "multicam_egomotion/ros/image_conversion.h"
+#include "multicam_egomotion/ros/input_queue.h"
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr std::chrono::milliseconds kNoWait(0);
+constexpr std::int64_t kSecond = 1000000000;
+
+TEST(InputQueue, KeepsOrderDropsOldestImagesAndServesRequestsFirst) {
+  InputQueue queue(2, 2);
+  for (int i = 0; i < 3; ++i) {
+    queue.push(ImageInput{i, nullptr, nullptr, {}});
+    queue.push(sensor_msgs::ImuConstPtr());
+  }
+  int served = 0;
+  queue.post([&served] { ++served; });
+  EXPECT_EQ(queue.droppedImages(), 1u);
+  EXPECT_EQ(queue.droppedImu(), 1u);
+
+  auto input = queue.pop(kNoWait);
+  ASSERT_TRUE(input && std::holds_alternative<Request>(*input));
+  std::get<Request> (*input)();
+  EXPECT_EQ(served, 1);
+  for (int camera = 1; camera < 3; ++camera) {
+    input = queue.pop(kNoWait);
+    ASSERT_TRUE(input && std::holds_alternative<ImageInput>(*input));
+    EXPECT_EQ(std::get<ImageInput>(*input).camera, camera);
+    input = queue.pop(kNoWait);
+    ASSERT_TRUE(input && std::holds_alternative<sensor_msgs::ImuConstPtr>(*input));
+  }
+  EXPECT_FALSE(queue.pop(kNoWait));
+  queue.push(ImageInput{});
+  queue.close();
+  EXPECT_FALSE(queue.pop(kNoWait));
+}
+
+TEST(DataClock, FollowsTheNewestStampAndJumpsThatAreConfirmed) {
+  DataClock clock;
+  EXPECT_EQ(clock.advance(100 * kSecond), 100 * kSecond);
+  EXPECT_EQ(clock.advance(100 * kSecond - 5), 100 * kSecond);  // late
+  EXPECT_EQ(clock.advance(5000 * kSecond), 100 * kSecond);     // one wrong stamp
+  EXPECT_EQ(clock.advance(100 * kSecond + 1), 100 * kSecond + 1);
+  EXPECT_EQ(clock.advance(20 * kSecond), 100 * kSecond + 1);
+  EXPECT_EQ(clock.advance(20 * kSecond + 1), 20 * kSecond + 1);  // a jump back
+}
+
+sensor_msgs::Image gradient() {
+  sensor_msgs::Image image;
+  image.encoding = sensor_msgs::image_encodings::MONO8;
+  image.width = 4;
+  image.height = 2;
+  image.step = 6;
+  image.data = {0, 1, 2, 3, 99, 99, 4, 5, 6, 7, 99, 99};
+  return image;
+}
+
+TEST(ImageConversion, PaddedRowsOwnMemory) {
+  sensor_msgs::Image image = gradient();
+  const cv::Mat grey = greyPixels(image);
+  image.data.assign(image.data.size(), 0);
+  ASSERT_EQ(grey.size(), cv::Size(4, 2));
+  EXPECT_EQ(grey.at<std::uint8_t>(1, 3), 7);
+}
+
+TEST(ImageConversion, FaultsAreNamed) {
+  sensor_msgs::Image image = gradient();
+  image.data.pop_back();
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  image = gradient();
+  image.step = 3;
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  image = gradient();
+  image.encoding = "holographic";
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  EXPECT_THROW(greyPixels(sensor_msgs::Image()), std::invalid_argument);
+  EXPECT_THROW(greyPixels(sensor_msgs::CompressedImage()), std::invalid_argument);
+}
+
+TEST(ImageConversion, CompressedImages) {
+  cv::Mat pixels(8, 8, CV_8UC1);
+  for (int i = 0; i < 64; ++i) pixels.data[i] = static_cast<std::uint8_t>(3 * i);
+  sensor_msgs::CompressedImage image;
+  image.format = "png";
+  cv::imencode(".png", pixels, image.data);
+  EXPECT_EQ(cv::norm(greyPixels(image), pixels), 0.0);
+  image.data.resize(10);
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace multicam_egomotion

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+
+#include "multicam_egomotion/ros/messages.h"
+
+namespace multicam_egomotion {
+namespace {
+
+Matrix6d published(const Matrix6d& covariance) {
+  return Eigen::Map<const Matrix6d>(toRosCovariance(covariance).data());
+}
+
+void expectPublishable(const Matrix6d& covariance) {
+  EXPECT_TRUE(covariance.isApprox(covariance.transpose(), 0.0));
+  EXPECT_EQ(covariance.llt().info(), Eigen::Success) << covariance;
+  EXPECT_GE(covariance.diagonal().minCoeff(), 1e-10);
+  EXPECT_LE(covariance.diagonal().maxCoeff(), 1e6);
+}
+
+TEST(Covariance, GoodOnesAreUnchanged) {
+  std::srand(1);
+  const Matrix6d A = Matrix6d::Random();
+  const Matrix6d covariance = A * A.transpose() + 0.01 * Matrix6d::Identity();
+  EXPECT_TRUE(published(covariance).isApprox(covariance, 1e-12));
+}
+
+TEST(Covariance, ZeroHugeSingularAndInvalidOnesBecomePositiveDefinite) {
+  expectPublishable(published(Matrix6d::Zero()));
+  expectPublishable(published(1e12 * Matrix6d::Identity()));
+  expectPublishable(published(Matrix6d::Ones()));
+  expectPublishable(published(1e9 * Matrix6d::Ones()));
+  Matrix6d invalid = Matrix6d::Identity();
+  invalid(1, 4) = std::numeric_limits<double>::quiet_NaN();
+  expectPublishable(published(invalid));
+  EXPECT_EQ(published(invalid)(0, 0), 1e6);
+}
+
+EgoMotionResult movedResult() {
+  EgoMotionResult result;
+  result.stamp_ns = 1400000000123456789;
+  result.previous_stamp_ns = 1400000000073456789;
+  result.T_odom_body.pose.translation() << 1, 2, 3;
+  result.T_previous_body.pose.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  result.T_previous_body.pose.translation() << 0.1, 0, 0;
+  result.twist.linear << 2, 0, 0;
+  result.points = {{1, 2, 3}, {4, 5, 6}};
+  return result;
+}
+
+TEST(Messages, FramesAndStamps) {
+  const EgoMotionResult result = movedResult();
+  const FrameNames frames{"odom", "base"};
+  const nav_msgs::Odometry odometry = toOdometry(result, frames);
+  EXPECT_EQ(toNanoseconds(odometry.header.stamp), result.stamp_ns);
+  EXPECT_EQ(odometry.header.frame_id, "odom");
+  EXPECT_EQ(odometry.child_frame_id, "base");
+  EXPECT_EQ(odometry.pose.pose.position.z, 3.0);
+  EXPECT_EQ(odometry.twist.twist.linear.x, 2.0);
+  const nav_msgs::Odometry relative = toRelativePose(result, frames);
+  EXPECT_EQ(relative.header.frame_id, "base_previous");
+  EXPECT_EQ(relative.child_frame_id, "base");
+  EXPECT_EQ(relative.pose.pose.position.x, 0.1);
+  EXPECT_EQ(toRosTime(-5), ros::Time(0));
+}
+
+TEST(Messages, PreviousTransformIsTheInverse) {
+  const EgoMotionResult result = movedResult();
+  const geometry_msgs::TransformStamped transform = toPreviousTransform(result, {"odom", "base"});
+  EXPECT_EQ(transform.header.frame_id, "base");
+  EXPECT_EQ(transform.child_frame_id, "base_previous");
+  const Eigen::Vector3d t = result.T_previous_body.pose.inverse().translation();
+  EXPECT_NEAR(transform.transform.translation.x, t.x(), 1e-15);
+  EXPECT_NEAR(transform.transform.translation.y, t.y(), 1e-15);
+}
+
+TEST(Messages, PointCloud) {
+  const sensor_msgs::PointCloud2 cloud = toPointCloud(movedResult(), {"odom", "base"});
+  EXPECT_EQ(cloud.width * cloud.height, 2u);
+  EXPECT_EQ(cloud.header.frame_id, "odom");
+  EXPECT_EQ(*reinterpret_cast<const float*>(&cloud.data[cloud.point_step + 8]), 6.0f);
+}
+
+TEST(Messages, ImuOrientationNeedsACovariance) {
+  sensor_msgs::Imu imu;
+  imu.orientation.w = 1.0;
+  EXPECT_LT(toImuSample(imu).orientation_sigma, 0.0);  // covariance of zeros: unknown
+  imu.orientation_covariance = {0.04, 0, 0, 0, 0.01, 0, 0, 0, 1};
+  EXPECT_DOUBLE_EQ(toImuSample(imu).orientation_sigma, 0.2);
+  imu.orientation.w = 0.0;
+  EXPECT_LT(toImuSample(imu).orientation_sigma, 0.0);
+  imu.orientation.w = 1.0;
+  imu.orientation_covariance[0] = -1.0;
+  EXPECT_LT(toImuSample(imu).orientation_sigma, 0.0);
+}
+
+}  // namespace
+}  // namespace multicam_egomotion
