@@ -10,13 +10,21 @@ if(NOT TARGET tests)
   add_custom_target(tests)
 endif()
 
-# One ctest entry a test: a skipped one is named, and hides no failure of its neighbours.
+# One ctest entry a test: a skipped one is named, and hides no failure of its neighbours. Suites that share a costly set-up
+# run as one entry.
 function(add_unit_test name)
-  add_executable(${name} EXCLUDE_FROM_ALL ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${name}.cpp)
+  set(source ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${name}.cpp)
+  add_executable(${name} EXCLUDE_FROM_ALL ${source})
   target_link_libraries(${name} ${ARGN} GTest::GTest GTest::Main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-  gtest_discover_tests(${name} TEST_PREFIX ${name}. WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
-    DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 300 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  file(STRINGS ${source} shared_set_up REGEX "SetUpTestSuite")
+  if(shared_set_up)
+    add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+  else()
+    gtest_discover_tests(${name} TEST_PREFIX ${name}. WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+      DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  endif()
   add_dependencies(tests ${name})
 endfunction()
 
@@ -32,7 +40,7 @@ if(MULTICAM_EGOMOTION_ROS)
     get_filename_component(name ${file} NAME_WE)
     add_test(NAME ${name} COMMAND ${PYTHON_EXECUTABLE} -m unittest -v ${name}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
-    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 300)
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 600)
   endforeach()
 endif()
 

@@ -115,7 +115,10 @@ wait_until() {  # wait_until SECONDS WHAT COMMAND ...
   local deadline=$((SECONDS + $1)) what=$2
   shift 2
   until ("$@") >/dev/null 2>&1; do
-    [[ $SECONDS -lt $deadline ]] || fail "$what did not start; logs are in $demo"
+    [[ $SECONDS -lt $deadline ]] || fail "$what did not start in time; logs are in $demo"
+    for pid in "${started[@]}"; do
+      kill -0 "$pid" 2>/dev/null || fail "$what did not start; logs are in $demo"
+    done
     sleep 0.3
   done
 }
@@ -145,7 +148,7 @@ recorder=${started[-1]}
 wait_until 60 'rosbag record' has_line /record rostopic info /odometry
 background egomotion.log roslaunch multicam_egomotion egomotion.launch ${rig:+rig:="$rig"} "${launch_arguments[@]}"
 launched=${started[-1]}
-wait_until 60 'the nodelet' has_line /egomotion/set_pose rosservice list
+wait_until 120 'the nodelet' has_line /egomotion/set_pose rosservice list
 
 echo "Replaying $bag"
 background play.log rosrun rosbag play --quiet --clock --delay 3 --rate "$rate" "$bag"

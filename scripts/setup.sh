@@ -34,25 +34,33 @@ else
   )
 fi
 
+as_root() {
+  if [[ $(id -u) -eq 0 ]]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    echo "setup.sh: found no sudo, expected it or root for: $*" >&2
+    return 1
+  fi
+}
+
+# roslaunch looks up localhost; a bare root file system may lack even that.
+if ! getent hosts localhost >/dev/null; then
+  echo '127.0.0.1 localhost' | as_root tee -a /etc/hosts >/dev/null
+fi
+
 installed=$(dpkg-query -W -f='${binary:Package} ${db:Status-Status}\n' 2>/dev/null | sed -n 's/\(:[^ ]*\)\? installed$//p')
 mapfile -t missing < <(printf '%s\n' "${packages[@]}" | grep -vxF -f <(printf '%s\n' "$installed") || true)
 if [[ ${#missing[@]} -eq 0 ]]; then
   exit 0
 fi
 
-as_root=()
-if [[ $(id -u) -ne 0 ]]; then
-  if ! command -v sudo >/dev/null; then
-    echo "setup.sh: found no sudo, expected it or root to install: ${missing[*]}" >&2
-    exit 1
-  fi
-  as_root=(sudo)
-fi
 echo "Installing ${missing[*]}"
 install=(env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}")
 # The package lists are fetched only where they are absent or too old to install from.
 known=$(apt-cache policy "${missing[@]}" 2>/dev/null | grep -c '^  Candidate: [^(]' || true)
-if [[ $known -lt ${#missing[@]} ]] || ! "${as_root[@]}" "${install[@]}"; then
-  "${as_root[@]}" apt-get update
-  "${as_root[@]}" "${install[@]}"
+if [[ $known -lt ${#missing[@]} ]] || ! as_root "${install[@]}"; then
+  as_root apt-get update
+  as_root "${install[@]}"
 fi

@@ -13,9 +13,8 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-// A landmark that is seen without parallax says nothing of its distance; this keeps its 3x3 block invertible without
-// saying anything of the scale (sigma 100 / m).
-constexpr double kInverseDistanceInformation = 1e-4;
+// Points stay in front: beyond infinity a reversed translation would explain the images as well [1/m].
+constexpr double kFarthest = 1e-4;
 
 // Two unit vectors that complete `direction` to an orthogonal frame.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
@@ -53,14 +52,16 @@ BundlePose retract(const BundlePose& a, const Vector6d& d) {
 }
 
 bool BundleAdjustment::error(const BundleLandmark& landmark, const BundleObservation& observation,
-                             Eigen::Vector2d* error_px) const {
+                             Eigen::Vector2d* error_px, Eigen::Vector2d* by_inverse_distance) const {
   const BundlePose& pose = poses[observation.pose];
-  const Eigen::Vector3d x =
-      pose.R.transpose() * (landmark.direction + landmark.inverse_distance * (landmark.origin - pose.p)) -
-      landmark.inverse_distance * observation.center;
+  const Eigen::Vector3d moved = pose.R.transpose() * (landmark.origin - pose.p) - observation.center;
+  const Eigen::Vector3d x = pose.R.transpose() * landmark.direction + landmark.inverse_distance * moved;
   const double depth = observation.bearing.dot(x);
   if (depth <= 1e-9) return false;
   *error_px = observation.to_pixel * x / depth;
+  if (by_inverse_distance) {
+    *by_inverse_distance = (observation.to_pixel * moved - *error_px * observation.bearing.dot(moved)) / depth;
+  }
   return true;
 }
 
@@ -72,6 +73,8 @@ double BundleAdjustment::normalizedError(const BundleLandmark& landmark, const B
 double BundleAdjustment::cost(const BundleOptions& options) const {
   double sum = 0.0;
   for (const BundleLandmark& landmark : landmarks) {
+    const double distance_error = landmark.inverse_distance / options.inverse_distance_sigma;
+    sum += 0.5 * distance_error * distance_error;
     for (const BundleObservation& observation : landmark.observations) {
       const double error = normalizedError(landmark, observation);
       sum += robustCost(error < 0.0 ? 1e6 : error * error, options.robust_width);
@@ -103,6 +106,7 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
   couplings_.clear();
   weight_sum_ = weighted_squares_ = 0.0;
   const double inverse_sigma = 1.0 / pixel_sigma;
+  const double distance_information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
 
   for (std::size_t l = 0; l < landmarks.size(); ++l) {
     const BundleLandmark& landmark = landmarks[l];
@@ -114,7 +118,8 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
     const Eigen::Matrix<double, 3, 2> tangent = tangentBasis(landmark.direction);
     Eigen::Matrix3d landmark_H = Eigen::Matrix3d::Zero();
     Eigen::Vector3d landmark_b = Eigen::Vector3d::Zero();
-    landmark_H(2, 2) = kInverseDistanceInformation;
+    landmark_H(2, 2) = distance_information;
+    landmark_b(2) = -distance_information * landmark.inverse_distance;
 
     for (const BundleObservation& observation : landmark.observations) {
       const BundlePose& pose = poses[observation.pose];
@@ -145,6 +150,7 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
       H->block<6, 6>(row, row).noalias() += weight * d_pose.transpose() * d_pose;
       b->segment<6>(row).noalias() -= weight * d_pose.transpose() * residual;
 
+      if (options.fix_landmarks) continue;
       Coupling* coupling = nullptr;
       for (int c = 0; c < block.coupling_count; ++c) {
         Coupling& candidate = couplings_[block.first_coupling + c];
@@ -233,7 +239,7 @@ void BundleAdjustment::linearize(Eigen::MatrixXd* vision_H, Eigen::VectorXd* vis
 BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
   BundleSummary summary;
   const int size = 6 * static_cast<int>(poses.size());
-  const int fixed = prior.poses.empty() ? 6 : 0;  // without a prior the first pose is the gauge
+  const int fixed = prior.poses.empty() && !options.fix_landmarks ? 6 : 0;  // the first pose is the gauge
   Eigen::MatrixXd H(size, size), rest_H(size, size);
   Eigen::VectorXd b(size), rest_b(size), step(size);
   double lambda = 1e-5;
@@ -271,7 +277,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
       }
       const Eigen::Vector3d d = block.H_inverse * rhs;
       landmark.direction = (landmark.direction + tangentBasis(landmark.direction) * d.head<2>()).normalized();
-      landmark.inverse_distance += d[2];
+      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kFarthest);
     }
     const double new_cost = cost(options);
     const double decrease = summary.cost - new_cost;

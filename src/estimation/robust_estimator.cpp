@@ -11,6 +11,8 @@
 namespace multicam_egomotion {
 namespace {
 
+constexpr int kMaxRefinements = 6;  // of one new best model
+
 // Grouped positions of the correspondences whose squared error is below the threshold.
 std::vector<int> inlierPositions(const std::vector<double>& squared_errors, double squared_threshold) {
   std::vector<int> positions;
@@ -59,23 +61,25 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
       best.t = model.t;
       best.success = true;
 
-      // Local optimization: the new best, refined over its inliers, nearly always scores better still.
+      // Local optimization: the new best, refined over its inliers as long as that gains more.
       set.squaredSampsonErrors(best.R, best.t, &errors);
-      const std::vector<int> support = inlierPositions(errors, squared_threshold);
-      double inlier_share = static_cast<double>(support.size()) / set.size();
-      Eigen::Matrix3d R = best.R;
-      Eigen::Vector3d t = best.t;
-      ++best.refinements;
-      if (refineTwoView(set, support, rotation_prior, options.refinement, &R, &t)) {
+      std::vector<int> support = inlierPositions(errors, squared_threshold);
+      for (int round = 0; round < kMaxRefinements; ++round) {
+        Eigen::Matrix3d R = best.R;
+        Eigen::Vector3d t = best.t;
+        ++best.refinements;
+        if (!refineTwoView(set, support, rotation_prior, options.refinement, &R, &t)) break;
         const double refined = set.score(R, t, squared_threshold, best.score, &errors);
-        if (refined < best.score) {
-          best.score = refined;
-          best.R = R;
-          best.t = t;
-          set.squaredSampsonErrors(R, t, &errors);
-          inlier_share = static_cast<double>(inlierPositions(errors, squared_threshold).size()) / set.size();
-        }
+        if (!(refined < best.score)) break;
+        const bool converged = refined > 0.99 * best.score;
+        best.score = refined;
+        best.R = R;
+        best.t = t;
+        set.squaredSampsonErrors(R, t, &errors);
+        support = inlierPositions(errors, squared_threshold);
+        if (converged) break;
       }
+      const double inlier_share = static_cast<double>(support.size()) / set.size();
       needed = samplesNeeded(inlier_share, sample_size, options.success_probability);
     }
   }

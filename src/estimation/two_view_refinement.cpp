@@ -20,7 +20,7 @@ struct Problem {
   const TwoViewRefinementOptions& options;
 
   // Signed Sampson error [px] of one correspondence and, when asked, its gradient by (d t, d theta) with R <- Exp(d
-  // theta) R. The denominator is held while differentiating, as usual for Sampson errors.
+  // theta) R.
   double error(int position, const Eigen::Matrix3d& R, const Eigen::Vector3d& t, Vector6d* gradient) const {
     const int index = set.indexAt(position);
     const CorrespondenceSet::CameraPair& pair = set.cameraPairs()[set.pairOf(index)];
@@ -32,12 +32,17 @@ struct Problem {
     const Eigen::Vector3d n2 = baseline.cross(d1);
     const Eigen::Vector3d n1 = d2.cross(baseline);
     const double e = d2.dot(n2);
-    const double inverse = 1.0 / std::sqrt((n2.squaredNorm() - e * e) * set.inverseSquaredScale2(position) +
-                                           (n1.squaredNorm() - e * e) * set.inverseSquaredScale1(position) + 1e-30);
+    const double k1 = set.inverseSquaredScale1(position), k2 = set.inverseSquaredScale2(position);
+    const double inverse = 1.0 / std::sqrt((n2.squaredNorm() - e * e) * k2 + (n1.squaredNorm() - e * e) * k1 + 1e-30);
     if (gradient) {
-      const Eigen::Vector3d d1_cross_d2 = d1.cross(d2);
-      gradient->head<3>() = d1_cross_d2 * inverse;                                                 // by baseline
-      gradient->tail<3>() = (center.cross(d1_cross_d2) + d1.cross(d2.cross(baseline))) * inverse;  // by R
+      // Numerator and denominator: with the denominator held, every baseline would seem to fit better the shorter it
+      // is.
+      const double shrink = e * inverse * inverse * inverse;
+      const double numerator = inverse + shrink * e * (k1 + k2);
+      const Eigen::Vector3d by_baseline = numerator * d1.cross(d2) - shrink * (k2 * d1.cross(n2) + k1 * n1.cross(d2));
+      const Eigen::Vector3d by_direction = numerator * d2.cross(baseline) - (shrink * k2) * n2.cross(baseline);
+      gradient->head<3>() = by_baseline;
+      gradient->tail<3>() = center.cross(by_baseline) + d1.cross(by_direction);
     }
     return e * inverse;
   }

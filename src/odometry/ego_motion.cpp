@@ -21,6 +21,9 @@ namespace {
 
 constexpr double kMovingParallax = 1.0;        // image motion that shows a translation for certain [px]
 constexpr double kUnknownSpeedShare = 0.2;     // of the velocity's sigma, taken for the speed of which nothing is known
+constexpr double kFarDistance = 20.0;          // what does not move in the images is taken to be no further away [m]
+constexpr double kUnknownDistance = 100.0;     // sigma of a displacement of which only the direction is seen [m]
+constexpr double kStillParallax = 0.1;         // image motion that cannot be told from none [px]
 constexpr double kJumpBack = 0.5;              // stamps that go back by more are a jump of the clock [s]
 constexpr double kJumpPositionSigma = 1.0;     // contract 13 [m]
 constexpr double kJumpAttitudeSigma = 0.1745;  // contract 13: 10 deg [rad]
@@ -80,7 +83,8 @@ class EgoMotion::Impl {
     check(options);
     options_.inertial.initial_velocity_sigma = options.initial_velocity_sigma;
     if (options.use_imu) {
-      auto motion = std::make_unique<InertialMotion>(imu, options_.inertial, &imu_buffer_);
+      auto motion =
+          std::make_unique<InertialMotion>(imu, options_.inertial, &imu_buffer_, options.imu_orientation == "message");
       inertial_ = motion.get();
       motion_ = std::move(motion);
     } else {
@@ -114,7 +118,7 @@ class EgoMotion::Impl {
           seconds(now_ns - set.stamp_ns) < options_.max_imu_wait_s) {
         break;
       }
-      results.push_back(process(set));
+      process(set, &results);
       pending_.pop_front();
     }
     if (pending_.empty()) coast(&results);
@@ -189,19 +193,21 @@ class EgoMotion::Impl {
     return poses;
   }
 
-  EgoMotionResult process(const FrameSet& set) {
+  void process(const FrameSet& set, std::vector<EgoMotionResult>* results) {
     ++counters_.frame_sets;
-    EgoMotionResult result = newResult(set.stamp_ns);
+    results->push_back(newResult(set.stamp_ns));
+    EgoMotionResult& result = results->back();
     result.image_stamps_ns.assign(rig_.size(), 0);
     for (const CameraImage& image : set.images) result.image_stamps_ns[image.camera] = image.stamp_ns;
 
     const std::int64_t stamp_ns = inertialStamp(set);
     if (options_.use_imu && imu_buffer_.latestStamp() < stamp_ns) ++counters_.frame_sets_without_imu;
     if (!motion_->initialized()) {
-      if (!motion_->initialize(stamp_ns)) return result;
+      if (!motion_->initialize(stamp_ns)) return;
     } else if (stamp_ns <= motion_->stamp()) {
       ++counters_.late_images;
-      return newResult(0);
+      results->pop_back();
+      return;
     } else {
       motion_->advanceTo(stamp_ns);
     }
@@ -231,7 +237,6 @@ class EgoMotion::Impl {
     fillFeatures(newest, &result);
     previous_ = std::move(newest);
     stage("frame");
-    return result;
   }
 
   // First frame of an odom epoch (contract 5).
@@ -244,6 +249,7 @@ class EgoMotion::Impl {
     }
     settled_ = !options_.use_imu;
     epoch_start_ns_ = motion_->stamp();
+    last_vision_ns_ = newest.frame.stamp_ns;
     covariance_ = restart_covariance_;
     published_.start(T_odom_body);
     restart_pose_.reset();
@@ -259,9 +265,9 @@ class EgoMotion::Impl {
     tracker_.markKeyframe();
   }
 
-  bool estimate(const PosedFrame& newest, MotionSummary motion, EgoMotionResult* result) {
+  bool estimate(const PosedFrame& newest, const MotionSummary& predicted, EgoMotionResult* result) {
     if (window_.empty()) return false;
-    const FrameConsensus consensus = findConsensus(previous_, newest, motion, motion_->upAtFrame(), options_.solver,
+    const FrameConsensus consensus = findConsensus(previous_, newest, predicted, motion_->upAtFrame(), options_.solver,
                                                    options_.ransac, options_.seed + counters_.frame_sets);
     stage("ransac");
     result->solver = consensus.solver;
@@ -271,6 +277,7 @@ class EgoMotion::Impl {
     if (!consensus.success) return false;
     tracker_.remove(consensus.outliers);
 
+    MotionSummary motion = predicted;
     motion.use_translation = !scale_seen_;
     Eigen::Isometry3d along = consensus.T_previous_body;
     const double speed_sigma = std::sqrt(motion.translation_covariance.trace() / 3.0);
@@ -290,9 +297,7 @@ class EgoMotion::Impl {
     inlier_tracks_.clear();
     inlier_tracks_.insert(estimate.inliers.begin(), estimate.inliers.end());
 
-    const bool usable_scale = estimate.scale_state == ScaleState::kObservable ||
-                              (estimate.scale_state == ScaleState::kNotApplicable && scale_seen_);
-    motion_->correct(estimate.vision, usable_scale);
+    learn(estimate, predicted.T_a_b.translation(), consensus.parallax_px);
     if (estimate.scale_state != ScaleState::kNotApplicable) {
       scale_seen_ = estimate.scale_state == ScaleState::kObservable;
     }
@@ -312,6 +317,31 @@ class EgoMotion::Impl {
     result->points = window_.points();
     last_vision_ns_ = newest.frame.stamp_ns;
     return true;
+  }
+
+  // What vision saw goes into the motion model: the displacement where its scale is seen or where nothing moves, else
+  // its direction.
+  void learn(const WindowEstimate& estimate, const Eigen::Vector3d& predicted, double parallax_px) {
+    const bool standing = estimate.scale_state == ScaleState::kNotApplicable;
+    RelativeMotion learned = estimate.vision;
+    Eigen::Ref<Eigen::Matrix3d> covariance = learned.covariance.topLeftCorner<3, 3>();
+    bool use_displacement = true;
+    if (standing && !scale_seen_) {
+      const double sigma = kFarDistance * std::max(parallax_px, kStillParallax) / rig_.camera(0).model.focalLength();
+      learned.T_a_b.translation().setZero();
+      covariance = sigma * sigma * Eigen::Matrix3d::Identity();
+    } else if (!standing && estimate.scale_state != ScaleState::kObservable) {
+      const double seen = learned.T_a_b.translation().norm();
+      const Eigen::Vector3d direction = learned.T_a_b.translation() / std::max(seen, 1e-9);
+      const double distance = direction.dot(predicted);
+      use_displacement = seen > 1e-9 && distance > 0.0;
+      const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - direction * direction.transpose();
+      learned.T_a_b.translation() = distance * direction;
+      covariance = (across * covariance * across * (distance * distance / (seen * seen)) +
+                    kUnknownDistance * kUnknownDistance * direction * direction.transpose())
+                       .eval();
+    }
+    motion_->correct(learned, use_displacement);
   }
 
   // Turns the attitude towards the vertical: at once while it is being found after a start in motion, later slowly
@@ -457,7 +487,6 @@ class EgoMotion::Impl {
     assembler_.reset();
     pending_.clear();
     tracker_.reset();
-    if (imu_buffer_.latestStamp() > 0 && last_stamp_ns_ > 0) imu_buffer_.prune(imu_buffer_.latestStamp());
     motion_->reset(forget_biases);
     previous_ = PosedFrame();
     inlier_tracks_.clear();

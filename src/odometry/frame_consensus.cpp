@@ -14,7 +14,8 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kAxisSigmas = 20.0;  // the axis is used where the angle exceeds this many sigmas of its error
+constexpr double kLeastBaseline = 1e-3;  // stands for a motion that is not known at all [m]
+constexpr double kAxisSigmas = 20.0;     // the axis is used where the angle exceeds this many sigmas of its error
 
 struct FourPointVertical {
   static constexpr int kSampleSize = 4;
@@ -29,6 +30,29 @@ struct FourPointAxis {
   using Prior = AxisPrior;
   static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
     return solveFourPointAxis(sample, prior, {true});
+  }
+};
+
+// Translation of a single camera pair whose rotation is known: its four-point samples are degenerate (central). The
+// baseline lies in the epipolar planes of both correspondences; its length cannot be seen and is given.
+struct TwoPointTranslation {
+  static constexpr int kSampleSize = 2;
+  struct Prior {
+    Eigen::Matrix3d R;  // R_f2_f1
+    Eigen::Vector3d center1, center2;
+    double baseline;  // [m]
+  };
+  static std::vector<RelativePose> solve(const std::array<RayCorrespondence, 2>& sample, const Prior& prior) {
+    Eigen::Vector3d normals[2];
+    for (int i = 0; i < 2; ++i) normals[i] = (prior.R * sample[i].first.direction).cross(sample[i].second.direction);
+    Eigen::Vector3d b = normals[0].cross(normals[1]);
+    const double length = b.norm();
+    if (!(length > 1e-12)) return {};
+    b *= prior.baseline / length;
+    // A point in front of both views moves against the baseline's epipole: R d1 depth1 + b = d2 depth2.
+    const Eigen::Vector3d d1 = prior.R * sample[0].first.direction;
+    if ((b.cross(sample[0].second.direction)).dot(d1.cross(sample[0].second.direction)) > 0.0) b = -b;
+    return {{prior.R, b - prior.R * prior.center1 + prior.center2, false}};
   }
 };
 
@@ -95,12 +119,20 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
   const RotationPrior rotation{R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
   const Eigen::Vector3d rotation_vector = logSO3(R_f2_f1);
   const double angle_sigma = std::sqrt(motion.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
-  const bool use_axis =
-      solver == "4pt-axis" || (solver == "auto" && rotation_vector.norm() > kAxisSigmas * angle_sigma);
-  consensus.solver = use_axis ? "4pt-axis" : "4pt-vertical";
-  const RobustEstimate estimated =
-      use_axis ? estimate<FourPointAxis>(set, {rotation_vector}, rotation, options, seed)
-               : estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), rotation, options, seed);
+  RobustEstimate estimated;
+  if (set.cameraPairs().size() == 1) {
+    const CorrespondenceSet::CameraPair& pair = set.cameraPairs().front();
+    const double baseline = std::max(motion.T_a_b.translation().norm(), kLeastBaseline);
+    consensus.solver = "2pt-translation";
+    estimated =
+        estimate<TwoPointTranslation>(set, {R_f2_f1, pair.center1, pair.center2, baseline}, rotation, options, seed);
+  } else if (solver == "4pt-axis" || (solver == "auto" && rotation_vector.norm() > kAxisSigmas * angle_sigma)) {
+    consensus.solver = "4pt-axis";
+    estimated = estimate<FourPointAxis>(set, {rotation_vector}, rotation, options, seed);
+  } else {
+    consensus.solver = "4pt-vertical";
+    estimated = estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), rotation, options, seed);
+  }
   consensus.success = estimated.success;
   consensus.samples = estimated.samples;
   consensus.inliers = estimated.inlier_count;
@@ -110,7 +142,8 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
   std::vector<double> parallax;
   for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
     if (estimated.success && !estimated.inliers[i]) consensus.outliers.push_back(matches.tracks[i]);
-    if (matches.parallax_px[i] >= 0.0) parallax.push_back(matches.parallax_px[i]);
+    if (matches.parallax_px[i] >= 0.0 && (!estimated.success || estimated.inliers[i]))
+      parallax.push_back(matches.parallax_px[i]);
   }
   consensus.outliers.erase(std::unique(consensus.outliers.begin(), consensus.outliers.end()), consensus.outliers.end());
   if (!parallax.empty()) {

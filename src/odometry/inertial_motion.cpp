@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
@@ -8,7 +10,8 @@
 
 namespace multicam_egomotion {
 namespace {
-constexpr double kInitializationSpan = 1.0;  // samples before the first frame that count [s]
+constexpr double kMinMessageTiltSigma = 0.0175;  // an orientation message is not believed further than 1 deg [rad]
+constexpr double kInitializationSpan = 1.0;      // samples before the first frame that count [s]
 // What calibration and synchronization of camera and IMU leave over, beyond the image noise.
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
@@ -16,20 +19,34 @@ constexpr double kDisplacementModelShare = 0.005;  // of the distance
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
-                               const ImuBuffer* buffer)
-    : calibration_(calibration), state_(calibration, options), buffer_(buffer) {}
+                               const ImuBuffer* buffer, bool tilt_from_message)
+    : calibration_(calibration), state_(calibration, options), buffer_(buffer), tilt_from_message_(tilt_from_message) {}
+
+void InertialMotion::takeTiltFromMessage() {
+  std::vector<ImuSample> samples;
+  buffer_->samplesBetween(state_.stamp(), state_.stamp(), &samples);
+  if (samples.empty() || !(samples.front().orientation_sigma > 0.0)) return;
+  const Eigen::Vector4d& q = samples.front().orientation_xyzw;
+  if (!(std::abs(q.norm() - 1.0) < 0.1)) return;
+  state_.correctTilt(Eigen::Quaterniond(q).normalized().toRotationMatrix(),
+                     std::max(samples.front().orientation_sigma, kMinMessageTiltSigma));
+}
 
 bool InertialMotion::initialize(std::int64_t stamp_ns) {
   std::vector<ImuSample> samples;
   buffer_->samplesBetween(stamp_ns - static_cast<std::int64_t>(kInitializationSpan * 1e9), stamp_ns, &samples);
   if (!state_.initialize(samples)) return false;
   state_.propagateTo(stamp_ns, *buffer_);
+  if (tilt_from_message_) takeTiltFromMessage();
   state_.markFrame();
   initialized_ = true;
   return true;
 }
 
-void InertialMotion::advanceTo(std::int64_t stamp_ns) { state_.propagateTo(stamp_ns, *buffer_); }
+void InertialMotion::advanceTo(std::int64_t stamp_ns) {
+  state_.propagateTo(stamp_ns, *buffer_);
+  if (tilt_from_message_) takeTiltFromMessage();
+}
 
 MotionSummary InertialMotion::motionSinceFrame() const {
   Eigen::Isometry3d T_imu1_imu2 = Eigen::Isometry3d::Identity();
@@ -39,7 +56,10 @@ MotionSummary InertialMotion::motionSinceFrame() const {
   MotionSummary motion;
   motion.T_a_b = bodyRelativePose(calibration_.T_body_imu, T_imu1_imu2);
   motion.rotation_covariance = R_body_imu * state_.rotationSinceFrameCovariance() * R_body_imu.transpose();
-  motion.translation_covariance = R_body_imu * state_.displacementSinceFrameCovariance() * R_body_imu.transpose();
+  // The lever arm turns with the body.
+  const Eigen::Matrix3d arm = motion.T_a_b.linear() * skew(calibration_.T_body_imu.translation());
+  motion.translation_covariance = R_body_imu * state_.displacementSinceFrameCovariance() * R_body_imu.transpose() +
+                                  arm * motion.rotation_covariance * arm.transpose();
   return motion;
 }
 
@@ -54,8 +74,10 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   state_.correctRelativeRotation(T_imu1_imu2.linear(), rotation_covariance);
   if (!scale_seen) return;
   const double share = kDisplacementModelShare * T_imu1_imu2.translation().norm();
+  Eigen::Matrix<double, 3, 6> to_imu;  // of the IMU's displacement by that of the body and its rotation
+  to_imu << R_imu_body, -R_imu_body * skew(vision.T_a_b.linear() * calibration_.T_body_imu.translation());
   const Eigen::Matrix3d displacement_covariance =
-      R_imu_body * vision.covariance.topLeftCorner<3, 3>() * R_imu_body.transpose() +
+      to_imu * vision.covariance * to_imu.transpose() +
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
   state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
 }
@@ -85,6 +107,7 @@ TwistWithCovariance InertialMotion::twist() const {
 
 void InertialMotion::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
   state_.restartAt(stamp_ns, attitude_sigma);
+  initialized_ = state_.initialized();
 }
 
 void InertialMotion::reset(bool forget_biases) {

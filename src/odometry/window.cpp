@@ -13,8 +13,10 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kPixelSigmaGain = 0.1;  // share of a frame's measured image noise in the running estimate
-constexpr int kMinLandmarks = 6;         // tracks that the newest frame shares with older ones, below which it fails
+constexpr double kPixelSigmaGain = 0.1;        // share of a frame's measured image noise in the running estimate
+constexpr double kPatchShare = 0.5;            // of a patch's own error, in the motion between two frames
+constexpr double kUsualInverseDistance = 0.3;  // of points whose distance is not seen [1/m]
+constexpr int kMinLandmarks = 6;  // tracks that the newest frame shares with older ones, below which it fails
 
 BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
 
@@ -81,19 +83,21 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
   }
 }
 
-// Distance of a landmark from its other views by a scan in inverse distance, refined by the joint optimization later.
+// Distance of a landmark from its other views by a scan in inverse distance, refined by the joint optimization later;
+// where the views do not tell, a far one.
 void Window::initializeLandmark(BundleLandmark* landmark) const {
   double best_cost = std::numeric_limits<double>::infinity(), best = 0.0;
   for (int k = 0; k <= 24; ++k) {
     const double inverse_distance = k == 0 ? 0.0 : 0.002 * std::pow(1.35, k - 1);  // 0, then 1/500 m to about 1/0.5 m
-    double cost = 0.0;
+    double cost = std::pow(inverse_distance / kUsualInverseDistance, 2);
     for (const BundleObservation& observation : landmark->observations) {
       const BundlePose& pose = states_[observation.pose].pose;
       const Eigen::Vector3d x =
           pose.R.transpose() * (landmark->direction + inverse_distance * (landmark->origin - pose.p)) -
           inverse_distance * observation.center;
       const double depth = observation.bearing.dot(x);
-      cost += depth > 1e-6 ? std::min((observation.to_pixel * x).squaredNorm() / (depth * depth), 1e6) : 1e6;
+      const double error = depth > 1e-6 ? (observation.to_pixel * x).norm() / (depth * pixel_sigma_) : 1e3;
+      cost += std::min(error * error, 1e6);
     }
     if (cost < best_cost) {
       best_cost = cost;
@@ -134,63 +138,31 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
   return bundle;
 }
 
-// Motion-only refinement of the newest pose against the landmarks as they are; returns the robust cost.
+// Refines the newest pose alone against the landmarks as they are; returns the robust cost.
 double Window::alignNewest(BundlePose* pose) const {
   const int newest = static_cast<int>(states_.size()) - 1;
   BundleAdjustment bundle;
   bundle.poses = {*pose};
   bundle.pixel_sigma = pixel_sigma_;
-  const double w2 = options_.bundle.robust_width * options_.bundle.robust_width;
-  std::vector<std::pair<const BundleLandmark*, BundleObservation>> views;
+  int views = 0;
   for (const auto& [track, landmark] : landmarks_) {
     if (landmark.inverse_distance == 0.0 || landmark.observations.front().pose == newest) continue;
-    for (BundleObservation observation : landmark.observations) {
+    BundleLandmark seen = landmark;
+    seen.observations.clear();
+    for (const BundleObservation& observation : landmark.observations) {
       if (observation.pose != newest) continue;
-      observation.pose = 0;
-      views.emplace_back(&landmark, observation);
+      seen.observations.push_back(observation);
+      seen.observations.back().pose = 0;
+      ++views;
     }
+    bundle.landmarks.push_back(std::move(seen));
   }
-  const auto cost = [&]() {
-    double sum = 0.0;
-    for (const auto& [landmark, observation] : views) {
-      const double e = bundle.normalizedError(*landmark, observation);
-      sum += 0.5 * w2 * std::log1p((e < 0.0 ? 1e6 : e * e) / w2);
-    }
-    return sum;
-  };
-  double best = cost();
-  for (int iteration = 0; iteration < 5 && views.size() >= 6; ++iteration) {
-    Matrix6d H = 1e-6 * Matrix6d::Identity();
-    Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
-    const BundlePose current = bundle.poses[0];
-    for (const auto& [landmark, observation] : views) {
-      const Eigen::Vector3d from_body =
-          current.R.transpose() * (landmark->direction + landmark->inverse_distance * (landmark->origin - current.p));
-      const Eigen::Vector3d x = from_body - landmark->inverse_distance * observation.center;
-      const double depth = observation.bearing.dot(x);
-      if (depth <= 1e-9) continue;
-      const double scale = 1.0 / (depth * pixel_sigma_);
-      const Eigen::Vector2d r = observation.to_pixel * x * scale;
-      const Eigen::Matrix<double, 2, 3> d_x =
-          observation.to_pixel * scale - r * observation.bearing.transpose() / depth;
-      Eigen::Matrix<double, 2, 6> J;
-      J << -landmark->inverse_distance * d_x, d_x * skew(from_body);
-      const double weight = 1.0 / (1.0 + r.squaredNorm() / w2);
-      H.noalias() += weight * J.transpose() * J;
-      b.noalias() -= weight * J.transpose() * r;
-    }
-    bundle.poses[0] = retract(current, H.ldlt().solve(b));
-    const double new_cost = cost();
-    if (!(new_cost < best)) {
-      bundle.poses[0] = current;
-      break;
-    }
-    const bool converged = best - new_cost < 1e-3 * best;
-    best = new_cost;
-    if (converged) break;
-  }
+  if (views < kMinLandmarks) return 0.0;
+  BundleOptions options = options_.bundle;
+  options.fix_landmarks = true;
+  const BundleSummary summary = bundle.solve(options);
   *pose = bundle.poses[0];
-  return best;
+  return summary.cost;
 }
 
 WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam,
@@ -280,12 +252,16 @@ void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& s
     for (const BundleObservation& now : landmark.observations) {
       if (now.pose != newest) continue;
       for (const BundleObservation& before : landmark.observations) {
-        Eigen::Vector2d error_now, error_before;
-        if (before.pose != newest - 1 || before.camera != now.camera || !bundle.error(landmark, now, &error_now) ||
-            !bundle.error(landmark, before, &error_before)) {
+        Eigen::Vector2d error_now, error_before, depth_now, depth_before;
+        if (before.pose != newest - 1 || before.camera != now.camera ||
+            !bundle.error(landmark, now, &error_now, &depth_now) ||
+            !bundle.error(landmark, before, &error_before, &depth_before)) {
           continue;
         }
-        const double square = 0.5 * (error_now - error_before).squaredNorm();
+        // Across the direction in which the point's distance, itself estimated, would take up the change.
+        const Eigen::Vector2d along = depth_now - depth_before;
+        const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+        const double square = 0.5 * std::pow(across.dot(error_now - error_before), 2);
         const double weight = 1.0 / (1.0 + square / w2);
         weights += weight;
         squares += weight * square;
@@ -293,7 +269,10 @@ void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& s
     }
   }
   if (weights < 10.0) return;
-  const double share = std::clamp(squares / (2.0 * weights * measured_sigma * measured_sigma), 0.01, 1.0);
+  // Half of what stays with the patches still shows: their shapes change from frame to frame.
+  const double white = squares / weights;
+  const double total = std::max(measured_sigma * measured_sigma, white);
+  const double share = std::clamp((white + kPatchShare * (total - white)) / (pixel_sigma_ * pixel_sigma_), 1e-4, 1.0);
   white_share_ += gain * (share - white_share_);
 }
 

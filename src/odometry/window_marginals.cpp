@@ -15,6 +15,10 @@ constexpr double kObservableScale = 0.1, kWeakScale = 0.5;  // contract 7
 constexpr double kWeakestInformation =
     1e-6;  // stands for "unknown" (sigma 1000 m or rad) where a direction is not seen
 
+// Calibration and tracking leave errors that do not average out over a window; scale is not seen through less [px].
+constexpr double kSystematicError = 0.25;
+constexpr double kUnknownInverseDistance = 100.0;  // sigma that says nothing of a point's distance [1/m]
+
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
 
 // d(position, rotation) of T_a_b, as PoseWithCovariance defines it, by the local perturbations (dp, dtheta) of a and b.
@@ -61,8 +65,10 @@ LastTwo solveLastTwo(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, int fix
 
 }  // namespace
 
-void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, double white_share,
+void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_options, double white_share,
                       WindowEstimate* estimate) {
+  BundleOptions options = solve_options;
+  options.inverse_distance_sigma = kUnknownInverseDistance;
   Eigen::MatrixXd vision_H, rest_H;
   Eigen::VectorXd vision_b, rest_b;
   bundle->linearize(&vision_H, &vision_b, &rest_H, &rest_b, options);
@@ -76,6 +82,9 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, do
   Matrix6d to_odom = Matrix6d::Zero();
   to_odom.topLeftCorner<3, 3>() = to_odom.bottomRightCorner<3, 3>() = newest.R;
   estimate->covariance = to_odom * all.covariance.bottomRightCorner<6, 6>() * to_odom.transpose();
+
+  const double systematic = std::pow(bundle->pixel_sigma / std::max(bundle->pixel_sigma, kSystematicError), 2);
+  const Eigen::MatrixXd scale_H = systematic * vision_H;
 
   // Between the last two frames only what changed of the image noise counts.
   vision_H /= white_share;
@@ -97,7 +106,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, do
   Eigen::MatrixXd none_H, rotation_H;
   Eigen::VectorXd none_b, rotation_b;
   rotations.linearize(&none_H, &none_b, &rotation_H, &rotation_b, options);
-  const LastTwo seen = solveLastTwo(vision_H + rotation_H, vision_b + rotation_b, 6);
+  const LastTwo seen = solveLastTwo(scale_H + rotation_H, rotation_b, 6);
   const Eigen::Matrix3d translation_covariance = (J * seen.covariance * J.transpose()).topLeftCorner<3, 3>();
   const double distance = estimate->relative.T_a_b.translation().norm();
   const Eigen::Vector3d direction =
@@ -113,7 +122,9 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& options, do
                                                                      : ScaleState::kUnobservable;
 }
 
-PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& options) {
+PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& solve_options) {
+  BundleOptions options = solve_options;
+  options.inverse_distance_sigma = kUnknownInverseDistance;
   Eigen::MatrixXd vision_H, rest_H;
   Eigen::VectorXd vision_b, rest_b;
   bundle->linearize(&vision_H, &vision_b, &rest_H, &rest_b, options);

@@ -17,10 +17,11 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kRankTolerance = 1e-6;   // below this F is looked at again with all four rows
-constexpr double kScaleTolerance = 1e-7;  // sine of the rotation, or relative singular value, without scale
-constexpr double kNoParallax = 1e-10;     // [rad]
-constexpr double kVanishing = 1e-13;      // polynomial against the row norms: rounding alone
+constexpr double kRankTolerance = 1e-6;    // below this F is looked at again with all four rows
+constexpr double kScaleTolerance = 1e-7;   // sine of the rotation, or relative singular value, without scale
+constexpr double kNoParallax = 1e-7;       // [rad]
+constexpr double kSmallestNormal = 1e-14;  // relative singular value of the normals without which t is not finite
+constexpr double kVanishing = 1e-13;       // polynomial against the row norms: rounding alone
 constexpr double kLargestSquare = 1e280;
 
 struct SampleClass {
@@ -67,7 +68,7 @@ bool translationFromAllRows(const AlignedRays& rays, double c, double s, double*
     translation = normals.matrixV().col(2);
     return true;
   }
-  if (sigma(2) <= kScaleTolerance * kNoParallax * sigma(0)) return false;
+  if (sigma(2) <= kSmallestNormal * sigma(0)) return false;
   translation = -size * normals.solve(rows.col(3));
   return translation.allFinite();
 }

@@ -120,11 +120,13 @@ inline void setPrior(BundleScene* scene, const std::vector<int>& poses, const Ei
 }
 
 /// The cost that BundleAdjustment minimizes, written anew from its definition: Cauchy loss of every pixel error, motion
-/// factors, prior.
+/// factors, priors of poses and inverse distances.
 inline double costOf(const BundleAdjustment& bundle, const BundleOptions& options) {
   const double w2 = options.robust_width * options.robust_width;
   double sum = 0.0;
   for (const BundleLandmark& landmark : bundle.landmarks) {
+    const double distance_error = landmark.inverse_distance / options.inverse_distance_sigma;
+    sum += 0.5 * distance_error * distance_error;
     for (const BundleObservation& view : landmark.observations) {
       const BundlePose& pose = bundle.poses[view.pose];
       const Eigen::Vector3d point = landmark.origin + landmark.direction / landmark.inverse_distance;

@@ -50,6 +50,13 @@ BundleLandmark moved(const BundleLandmark& landmark, const Eigen::Vector3d& d) {
   return result;
 }
 
+// Without the prior on inverse distances, which would draw the solution away from the truth.
+BundleOptions unbiasedOptions() {
+  BundleOptions options;
+  options.inverse_distance_sigma = 1e4;
+  return options;
+}
+
 // Residuals of all observations with square-root weights held at the present values, by poses and then landmarks.
 Eigen::VectorXd weightedResiduals(const BundleAdjustment& bundle, const std::vector<double>& root_weights) {
   std::vector<double> residuals;
@@ -101,6 +108,12 @@ void denseVision(const BundleAdjustment& bundle, const BundleOptions& options, E
   }
   *H = J.transpose() * J;
   *b = -J.transpose() * residuals;
+  for (int l = 0; l < landmarks; ++l) {
+    const int at = 6 * poses + 3 * l + 2;
+    const double information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
+    (*H)(at, at) += information;
+    (*b)[at] -= information * bundle.landmarks[l].inverse_distance;
+  }
 }
 
 // Schur complement of the landmarks.
@@ -132,7 +145,8 @@ TEST(BundleAdjustment, RetractAndLocalDifferenceAreInverse) {
 }
 
 TEST(BundleAdjustment, GradientIsThatOfTheCost) {
-  const BundleOptions options;
+  BundleOptions options;
+  options.inverse_distance_sigma = 0.02;  // strong, so that it shows
   for (unsigned seed = 1; seed <= 5; ++seed) {
     BundleScene scene = perturbedScene(seed, 0.0);
     Noise noise(seed + 50);
@@ -224,7 +238,7 @@ TEST(BundleAdjustment, LandmarksLeftOutDoNotCount) {
 }
 
 TEST(BundleAdjustment, ConvergesToTheTruthFromPerturbedStarts) {
-  BundleOptions options;
+  BundleOptions options = unbiasedOptions();
   options.max_iterations = 20;
   options.relative_decrease = 1e-12;
   for (unsigned seed = 1; seed <= 10; ++seed) {
@@ -245,7 +259,7 @@ TEST(BundleAdjustment, ConvergesToTheTruthFromPerturbedStarts) {
 }
 
 TEST(BundleAdjustment, OneStepNearTheOptimumIsTheDenseOne) {
-  BundleOptions options;
+  BundleOptions options = unbiasedOptions();
   options.max_iterations = 1;
   options.robust_width = 1e6;  // plain least squares
   BundleScene scene = makeBundleScene(3, 25, stereoCenters(), 0.5, 8);
@@ -265,7 +279,7 @@ TEST(BundleAdjustment, OneStepNearTheOptimumIsTheDenseOne) {
 }
 
 TEST(BundleAdjustment, OutliersHardlyMoveTheSolution) {
-  BundleOptions options;
+  BundleOptions options = unbiasedOptions();
   options.max_iterations = 30;
   BundleScene clean = makeBundleScene(4, 80, stereoCenters(), 0.3, 5), spoiled = clean;
   Noise noise(6);
@@ -348,6 +362,24 @@ TEST(BundleAdjustment, PointsBehindCamerasAndAtInfinityGiveNoNaN) {
   }
 }
 
+TEST(BundleAdjustment, FixedLandmarksStayAndFreeAllPoses) {
+  BundleScene scene = makeBundleScene(2, 60, stereoCenters(), 0.0, 14);
+  Noise noise(15);
+  perturbPoses(&scene, 0.05, 0.02, &noise);
+  scene.bundle.fix_landmarks = true;
+  const std::vector<BundleLandmark> before = scene.bundle.landmarks;
+  BundleOptions options = unbiasedOptions();
+  options.max_iterations = 15;
+  options.relative_decrease = 1e-12;
+  EXPECT_TRUE(scene.bundle.solve(options).finite);
+  EXPECT_LT(largestPoseError(scene, false), 1e-5);
+  EXPECT_LT(largestPoseError(scene, true), 1e-6);
+  for (std::size_t l = 0; l < before.size(); ++l) {
+    EXPECT_EQ(before[l].direction, scene.bundle.landmarks[l].direction);
+    EXPECT_EQ(before[l].inverse_distance, scene.bundle.landmarks[l].inverse_distance);
+  }
+}
+
 TEST(BundleAdjustment, NothingToEstimateIsNoFault) {
   BundleAdjustment bundle;
   bundle.poses.resize(1);
@@ -359,7 +391,7 @@ TEST(BundleAdjustment, NothingToEstimateIsNoFault) {
 }
 
 TEST(BundleAdjustment, MeasuresTheImageNoise) {
-  BundleOptions options;
+  BundleOptions options = unbiasedOptions();
   for (double noise_px : {0.25, 1.0}) {
     BundleScene scene = makeBundleScene(5, 100, stereoCenters(), noise_px, 31);
     scene.bundle.pixel_sigma = noise_px;

@@ -51,9 +51,13 @@ struct PosePrior {
 };
 
 struct BundleOptions {
+  bool fix_landmarks = false;  ///< estimate the poses against the landmarks as they are
   int max_iterations = 6;
   double relative_decrease = 1e-4;  ///< stop when the cost falls by less than this share
-  double robust_width = 2.0;        ///< residual, in image sigmas, from which an observation is down-weighted (Cauchy)
+  /// Points are not much nearer than this: sigma of a prior on the inverse distance about 0 [1/m]. It keeps points that
+  /// are seen without parallax from taking any distance, and says next to nothing of the scale.
+  double inverse_distance_sigma = 3.0;
+  double robust_width = 2.0;  ///< residual, in image sigmas, from which an observation is down-weighted (Cauchy)
 };
 
 struct BundleSummary {
@@ -71,7 +75,7 @@ class BundleAdjustment {
   std::vector<BundlePose> poses;
   std::vector<BundleLandmark> landmarks;
   std::vector<MotionFactor> factors;
-  PosePrior prior;           ///< empty: the first pose is held fixed
+  PosePrior prior;           ///< empty: the first pose is held fixed, unless the landmarks are
   double pixel_sigma = 0.5;  ///< image noise [px]
 
   BundleSummary solve(const BundleOptions& options);
@@ -82,7 +86,9 @@ class BundleAdjustment {
                  const BundleOptions& options, const std::vector<char>* use = nullptr);
 
   /// Pixel error of an observation [px]; false when the point is behind the camera.
-  bool error(const BundleLandmark& landmark, const BundleObservation& observation, Eigen::Vector2d* error_px) const;
+  /// `by_inverse_distance`: its derivative by the landmark's inverse distance [px m], optional.
+  bool error(const BundleLandmark& landmark, const BundleObservation& observation, Eigen::Vector2d* error_px,
+             Eigen::Vector2d* by_inverse_distance = nullptr) const;
   /// Its norm in image sigmas; negative when the point is behind the camera.
   double normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const;
 

@@ -29,8 +29,9 @@ struct FrameConsensus {
   std::string solver;
 };
 
-/// RANSAC between the previous and the newest frame. `solver`: auto, 4pt-vertical or 4pt-axis (contract 8); `up`: the
-/// vertical in body axes at the previous frame.
+/// RANSAC between the previous and the newest frame. `solver`: auto, 4pt-vertical or 4pt-axis (contract 8), but where
+/// only one camera sees anything its translation is found with the predicted rotation (2pt-translation). `up`: the vertical
+/// in body axes at the previous frame.
 FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newest, const MotionSummary& motion,
                              const Eigen::Vector3d& up, const std::string& solver,
                              const RobustEstimatorOptions& options, std::uint64_t seed);

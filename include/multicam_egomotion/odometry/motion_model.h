@@ -50,7 +50,9 @@ class MotionModel {
 /// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm.
 class InertialMotion : public MotionModel {
  public:
-  InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options, const ImuBuffer* buffer);
+  /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9).
+  InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options, const ImuBuffer* buffer,
+                 bool tilt_from_message);
 
   bool initialized() const override { return initialized_; }
   bool initialize(std::int64_t stamp_ns) override;
@@ -68,12 +70,13 @@ class InertialMotion : public MotionModel {
   void restartAt(std::int64_t stamp_ns, double attitude_sigma) override;
   void reset(bool forget_biases) override;
 
-  InertialState& state() { return state_; }
-
  private:
   ImuCalibration calibration_;
   InertialState state_;
+  void takeTiltFromMessage();
+
   const ImuBuffer* buffer_;
+  bool tilt_from_message_;
   bool initialized_ = false;
 };
 

@@ -18,7 +18,7 @@ struct WindowOptions {
   double keyframe_parallax_px = 15.0;  ///< median image motion since the last keyframe, rotation taken out [px]
   double keyframe_min_shared = 0.6;    ///< share of the tracks that the last keyframe saw too
   double initial_pixel_sigma = 0.5;    ///< image noise until it has been measured [px]
-  double min_pixel_sigma = 0.03;       ///< [px]
+  double min_pixel_sigma = 0.25;       ///< [px]
   double max_pixel_sigma = 2.0;        ///< [px]
   double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
   BundleOptions bundle;
@@ -102,8 +102,8 @@ class Window {
 
   WindowOptions options_;
   double pixel_sigma_;
-  /// Share of the image noise's variance that differs from one frame to the next. The rest belongs to the patch that is
-  /// tracked, is the same in both frames and cancels in the motion between them.
+  /// Share of pixel_sigma_'s variance that counts in the motion between two frames: much of a tracked patch's error is the
+  /// same in both and cancels, and pixel_sigma_ has a floor for what calibration leaves.
   double white_share_ = 1.0;
   int noise_measurements_ = 0;
   std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <image_transport/image_transport.h>
+#include <nav_msgs/Path.h>
+#include <ros/node_handle.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include "multicam_egomotion/geometry/camera_rig.h"
+#include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/ros/messages.h"
+#include "multicam_egomotion/ros/node_options.h"
+#include "multicam_egomotion/ros/recent_images.h"
+
+namespace multicam_egomotion {
+
+/// All outputs on topics and TF. Those that cost something are made only while someone subscribes.
+class Publishers {
+ public:
+  Publishers(ros::NodeHandle node, const FrameNames& frames, const NodeOptions& options);
+
+  void publish(const EgoMotionResult& result, const CameraRig& rig, const RecentImages& images);
+
+  bool wantsImuOdometry() const { return odometry_imu_.getNumSubscribers() > 0; }
+  void publishImuOdometry(const EgoMotionResult& result) { odometry_imu_.publish(toOdometry(result, frames_)); }
+
+ private:
+  void publishTransforms(const EgoMotionResult& result);
+  void publishPath(const EgoMotionResult& result, const nav_msgs::Odometry& odometry);
+
+  const FrameNames frames_;
+  const NodeOptions options_;
+  image_transport::ImageTransport transport_;
+  ros::Publisher odometry_, relative_pose_, ego_motion_, odometry_imu_, path_publisher_, points_;
+  image_transport::Publisher features_;
+  tf2_ros::TransformBroadcaster broadcaster_;
+
+  nav_msgs::Path path_;
+  std::uint32_t path_epoch_ = 0;
+  ros::Time path_published_;
+};
+
+}  // namespace multicam_egomotion

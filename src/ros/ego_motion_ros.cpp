@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "multicam_egomotion/ros/ego_motion_ros.h"
+
+#include <ros/console.h>
+
+#include <future>
+#include <stdexcept>
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr std::size_t kQueuedSets = 3;
+constexpr std::size_t kQueuedImuSamples = 5000;  // 5 s at 1 kHz
+
+/// The name in the parameters or the rig file, unless the topic was remapped.
+std::string chosenTopic(const ros::NodeHandle& node, const std::string& standard, const std::string& named) {
+  const bool remapped = node.resolveName(standard, true) != node.resolveName(standard, false);
+  return node.resolveName(remapped ? standard : named);
+}
+
+}  // namespace
+
+EgoMotionRos::EgoMotionRos(ros::NodeHandle node, ros::NodeHandle private_node)
+    : node_(node), private_node_(private_node) {
+  node_.setCallbackQueue(&callbacks_);
+  private_node_.setCallbackQueue(&callbacks_);
+  for (const std::string& name : applyParameters(readParameterServer(private_node_), &parameters_)) {
+    ROS_WARN("%s: '%s' is no parameter of multicam_egomotion and has no effect", private_node_.getNamespace().c_str(),
+             name.c_str());
+  }
+  topics_ = defaultTopics(parameters_.node.cameras, parameters_.node.base_frame);
+  if (!parameters_.node.rig_file.empty()) setup_ = loadRigSetup(parameters_, &topics_);
+  const RigTopics standard = defaultTopics(static_cast<int>(topics_.images.size()), topics_.base_frame);
+  for (std::size_t i = 0; i < topics_.images.size(); ++i) {
+    topics_.images[i] = chosenTopic(node_, standard.images[i], topics_.images[i]);
+    topics_.camera_infos[i] = chosenTopic(node_, standard.camera_infos[i], topics_.camera_infos[i]);
+  }
+  topics_.imu = chosenTopic(node_, standard.imu, topics_.imu);
+
+  const FrameNames frames{parameters_.node.odom_frame, topics_.base_frame};
+  queue_ = std::make_unique<InputQueue>(kQueuedSets * topics_.images.size(), kQueuedImuSamples);
+  publishers_ = std::make_unique<Publishers>(node_, frames, parameters_.node);
+  diagnostics_ = std::make_unique<Diagnostics>(node_, private_node_);
+  diagnostics_->health().use_imu = parameters_.odometry.use_imu;
+  if (setup_) {
+    start(*setup_);
+  } else {
+    acquisition_ = std::make_unique<RigAcquisition>(node_, topics_, parameters_);
+  }
+  subscribe();
+  spinner_ = std::make_unique<ros::AsyncSpinner>(2, &callbacks_);  // one may be waiting for a request to be served
+  spinner_->start();
+  worker_ = std::thread(&EgoMotionRos::work, this);
+}
+
+EgoMotionRos::~EgoMotionRos() {
+  running_ = false;
+  queue_->close();
+  if (worker_.joinable()) worker_.join();
+  spinner_->stop();
+}
+
+void EgoMotionRos::subscribe() {
+  transport_ = std::make_unique<image_transport::ImageTransport>(node_);
+  for (std::size_t i = 0; i < topics_.images.size(); ++i) {
+    watch_.add(topics_.images[i]);
+    subscribeImage(static_cast<int>(i), topics_.images[i]);
+  }
+  if (parameters_.odometry.use_imu) {
+    const std::size_t watched = topics_.images.size();
+    watch_.add(topics_.imu);
+    const boost::function<void(const sensor_msgs::ImuConstPtr&)> callback =
+        [this, watched](const sensor_msgs::ImuConstPtr& message) {
+          watch_.note(watched);
+          queue_->push(message);
+        };
+    subscribers_.push_back(
+        node_.subscribe<sensor_msgs::Imu>(topics_.imu, 1000, callback, nullptr, ros::TransportHints().tcpNoDelay()));
+  }
+  services_.push_back(private_node_.advertiseService("reset", &EgoMotionRos::reset, this));
+  services_.push_back(private_node_.advertiseService("set_pose", &EgoMotionRos::setPose, this));
+}
+
+void EgoMotionRos::subscribeImage(int camera, const std::string& topic) {
+  const auto receive = [this, camera](ImageInput input) {
+    watch_.note(camera);
+    input.camera = camera;
+    input.arrival = std::chrono::steady_clock::now();
+    queue_->push(std::move(input));
+  };
+  if (parameters_.node.image_transport == "compressed") {
+    const boost::function<void(const sensor_msgs::CompressedImageConstPtr&)> callback =
+        [receive](const sensor_msgs::CompressedImageConstPtr& image) {
+          receive({0, nullptr, image, {}});
+        };
+    subscribers_.push_back(node_.subscribe<sensor_msgs::CompressedImage>(topic + "/compressed", 5, callback));
+    return;
+  }
+  const boost::function<void(const sensor_msgs::ImageConstPtr&)> callback =
+      [receive](const sensor_msgs::ImageConstPtr& image) {
+        receive({0, image, nullptr, {}});
+      };
+  const image_transport::TransportHints hints(parameters_.node.image_transport, ros::TransportHints().tcpNoDelay(),
+                                              private_node_);
+  try {
+    image_subscribers_.push_back(transport_->subscribe(topic, 5, callback, ros::VoidPtr(), hints));
+  } catch (const image_transport::Exception& error) {
+    throw std::invalid_argument("parameter 'image_transport': " + std::string(error.what()));
+  }
+}
+
+std::string EgoMotionRos::serve(std::function<void(EgoMotion&)> request) {
+  auto done = std::make_shared<std::promise<std::string>>();
+  std::future<std::string> answer = done->get_future();
+  queue_->post([this, request, done] {
+    if (odometry_ == nullptr) {
+      done->set_value("the rig is not known yet");
+      return;
+    }
+    request(*odometry_);
+    done->set_value("");
+  });
+  const bool served = answer.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+  return served ? answer.get() : "not served within 5 s";
+}
+
+bool EgoMotionRos::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  const bool forget_biases = parameters_.node.forget_biases;
+  response.message = serve([forget_biases](EgoMotion& odometry) { odometry.reset(forget_biases); });
+  response.success = response.message.empty();
+  return true;
+}
+
+bool EgoMotionRos::setPose(SetPose::Request& request, SetPose::Response& response) {
+  if (!isRigid(request.pose)) {
+    response.message = "the pose is not finite, or its quaternion not of norm 1";
+  } else {
+    const Eigen::Isometry3d pose = toIsometry(request.pose);
+    response.message = serve([pose](EgoMotion& odometry) { odometry.setPose(pose); });
+  }
+  response.success = response.message.empty();
+  return true;
+}
+
+}  // namespace multicam_egomotion

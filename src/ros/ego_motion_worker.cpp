@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The worker thread of EgoMotionRos.
+#include <ros/console.h>
+
+#include <stdexcept>
+
+#include "multicam_egomotion/ros/ego_motion_ros.h"
+#include "multicam_egomotion/ros/image_conversion.h"
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr std::size_t kEarlyImuSamples = 2000;
+constexpr auto kWarningPeriod = std::chrono::seconds(5);
+
+}  // namespace
+
+void EgoMotionRos::work() {
+  while (running_ && !configuration_failed_) {
+    if (odometry_ == nullptr) acquireRig();
+    const std::optional<Input> input = queue_->pop(std::chrono::milliseconds(100));
+    try {
+      if (input) process(*input);
+    } catch (const std::exception& error) {
+      ++diagnostics_->health().internal_errors;
+      ROS_ERROR_THROTTLE(5.0, "%s: %s", private_node_.getNamespace().c_str(), error.what());
+    }
+    if (diagnostics_->due()) report();
+  }
+  // A shared nodelet manager lives on; this instance only keeps saying what is wrong.
+  while (running_) {
+    if (diagnostics_->due()) report();
+    if (const std::optional<Input> input = queue_->pop(std::chrono::milliseconds(100))) {
+      if (std::holds_alternative<Request>(*input)) std::get<Request> (*input)();
+    }
+  }
+}
+
+void EgoMotionRos::acquireRig() {
+  try {
+    if (const std::optional<RigSetup> setup = acquisition_->tryBuild(&diagnostics_->health().message)) start(*setup);
+  } catch (const std::invalid_argument& error) {
+    diagnostics_->health().state = Health::State::kConfigError;
+    diagnostics_->health().message = error.what();
+    ROS_FATAL("%s: %s", private_node_.getNamespace().c_str(), error.what());
+    report();
+    configuration_failed_ = true;
+  }
+}
+
+void EgoMotionRos::start(const RigSetup& setup) {
+  odometry_ = makeEgoMotion(setup, parameters_);
+  recent_images_ = std::make_unique<RecentImages>(setup.rig.size());
+  diagnostics_->health().state = Health::State::kRunning;
+  diagnostics_->health().message.clear();
+  for (const sensor_msgs::ImuConstPtr& sample : early_imu_) process(*sample);
+  early_imu_.clear();
+  ROS_INFO("%s: %d cameras, body frame %s", private_node_.getNamespace().c_str(), setup.rig.size(),
+           topics_.base_frame.c_str());
+}
+
+void EgoMotionRos::process(const Input& input) {
+  if (std::holds_alternative<Request>(input)) {
+    std::get<Request>(input)();
+  } else if (std::holds_alternative<ImageInput>(input)) {
+    if (odometry_ != nullptr) process(std::get<ImageInput>(input));
+  } else if (odometry_ != nullptr) {
+    process(*std::get<sensor_msgs::ImuConstPtr>(input));
+  } else {
+    const sensor_msgs::ImuConstPtr& sample = std::get<sensor_msgs::ImuConstPtr>(input);
+    acquisition_->setImuFrame(sample->header.frame_id);
+    early_imu_.push_back(sample);
+    if (early_imu_.size() > kEarlyImuSamples) early_imu_.pop_front();
+  }
+}
+
+void EgoMotionRos::process(const sensor_msgs::Imu& message) {
+  const ImuSample sample = toImuSample(message);
+  odometry_->addImu(sample);
+  publish(odometry_->advance(clock_.advance(sample.stamp_ns)));
+  if (publishers_->wantsImuOdometry()) {
+    if (const auto prediction = odometry_->predictToLatestImu()) publishers_->publishImuOdometry(*prediction);
+  }
+}
+
+void EgoMotionRos::process(const ImageInput& input) {
+  CameraImage image;
+  image.camera = input.camera;
+  try {
+    image.grey = input.raw ? greyPixels(*input.raw) : greyPixels(*input.compressed);
+  } catch (const std::invalid_argument& error) {
+    ++diagnostics_->health().undecodable_images;
+    ROS_WARN_THROTTLE(5.0, "%s: %s", topics_.images[input.camera].c_str(), error.what());
+    return;
+  }
+  image.stamp_ns = toNanoseconds(input.raw ? input.raw->header.stamp : input.compressed->header.stamp);
+  recent_images_->add(image, input.arrival);
+  const std::int64_t now_ns = clock_.advance(image.stamp_ns);
+  odometry_->addImage(image, now_ns);
+  publish(odometry_->advance(now_ns));
+}
+
+void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
+  for (const EgoMotionResult& result : results) {
+    publishers_->publish(result, odometry_->rig(), *recent_images_);
+    std::optional<double> latency_ms;
+    if (const auto arrival = recent_images_->lastArrival(result)) {
+      latency_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - *arrival).count();
+    }
+    diagnostics_->noteResult(result, latency_ms);
+  }
+}
+
+void EgoMotionRos::report() {
+  Health& health = diagnostics_->health();
+  health.silent_topics = watch_.silent();
+  health.dropped_images = queue_->droppedImages();
+  health.dropped_imu = queue_->droppedImu();
+  if (acquisition_ != nullptr) health.changed_camera_infos = acquisition_->changes();
+  if (odometry_ != nullptr) health.counters = odometry_->counters();
+  diagnostics_->publish();
+
+  const auto now = TopicWatch::Clock::now();
+  if (now - warned_ < kWarningPeriod || health.state == Health::State::kConfigError) return;
+  std::string missing = health.state == Health::State::kWaiting ? health.message : "";
+  for (const std::string& topic : health.silent_topics) missing += (missing.empty() ? "" : ", ") + topic;
+  if (missing.empty()) return;
+  ROS_WARN("%s: waiting for %s", private_node_.getNamespace().c_str(), missing.c_str());
+  warned_ = now;
+}
+
+}  // namespace multicam_egomotion

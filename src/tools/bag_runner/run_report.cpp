@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bag_runner/run_report.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+namespace multicam_egomotion {
+namespace {
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+double cpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) { return time.tv_sec + 1e-6 * time.tv_usec; };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double peakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024.0;
+}
+
+std::string quoted(const std::string& text) {
+  std::ostringstream json;
+  json << '"';
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      json << '\\' << c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      json << "\\u" << std::hex << std::setw(4) << std::setfill('0') << static_cast<int>(c) << std::dec;
+    } else {
+      json << c;
+    }
+  }
+  json << '"';
+  return json.str();
+}
+
+std::string parameterJson(XmlRpc::XmlRpcValue value) {
+  using XmlRpc::XmlRpcValue;
+  std::ostringstream json;
+  json << std::setprecision(17);
+  switch (value.getType()) {
+    case XmlRpcValue::TypeBoolean:
+      json << (static_cast<bool>(value) ? "true" : "false");
+      break;
+    case XmlRpcValue::TypeInt:
+      json << static_cast<int>(value);
+      break;
+    case XmlRpcValue::TypeDouble:
+      json << static_cast<double>(value);
+      break;
+    case XmlRpcValue::TypeString:
+      json << quoted(static_cast<std::string>(value));
+      break;
+    case XmlRpcValue::TypeArray:
+      json << '[';
+      for (int i = 0; i < value.size(); ++i) json << (i > 0 ? ", " : "") << parameterJson(value[i]);
+      json << ']';
+      break;
+    default:
+      json << "null";
+  }
+  return json.str();
+}
+
+/// One JSON object, a member a line.
+class JsonObject {
+ public:
+  JsonObject& add(const std::string& name, const std::string& json) {
+    text_ += (text_.empty() ? "" : ", ") + quoted(name) + ": " + json;
+    return *this;
+  }
+  JsonObject& add(const std::string& name, double value) {
+    std::ostringstream json;
+    json << std::setprecision(10) << value;
+    return add(name, json.str());
+  }
+  template <class Map>
+  static std::string counts(const Map& map) {
+    JsonObject object;
+    for (const auto& [name, count] : map) object.add(name, static_cast<double>(count));
+    return object.str();
+  }
+  std::string str() const { return "{" + text_ + "}"; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+void RunReport::stage(const char* name) {
+  const Clock::time_point now = Clock::now();
+  const bool whole = std::string(name) == "frame";
+  const Clock::time_point begin = whole ? frame_begin_ : stage_begin_;
+  times_ms_[name].push_back(std::chrono::duration<double, std::milli>(now - begin).count());
+  stage_begin_ = now;
+  if (whole) frame_begin_ = now;
+}
+
+void RunReport::addResult(const EgoMotionResult& result) {
+  ++statuses_[name(result.status)];
+  odom_epoch_ = std::max(odom_epoch_, result.odom_epoch);
+  const bool has_image = std::any_of(result.image_stamps_ns.begin(), result.image_stamps_ns.end(),
+                                     [](std::int64_t stamp_ns) { return stamp_ns != 0; });
+  if (!has_image) {
+    ++coast_ticks_;
+    return;
+  }
+  ++frames_;
+  if (result.keyframe) ++keyframes_;
+  if (!result.has_relative_pose) return;
+  ++scale_states_[name(result.scale_state)];
+  if (!result.solver.empty()) ++solvers_[result.solver];
+  tracks_.push_back(result.tracks);
+  inliers_.push_back(result.inliers);
+}
+
+void RunReport::writeJson(const std::string& path, const EgoMotionCounters& counters,
+                          const Parameters& parameters) const {
+  JsonObject times;
+  for (const auto& [stage, values] : times_ms_) {
+    JsonObject entry;
+    entry.add("count", static_cast<double>(values.size()));
+    entry.add("median_ms", quantile(values, 0.5)).add("p99_ms", quantile(values, 0.99));
+    times.add(stage, entry.str());
+  }
+  JsonObject faults;
+  faults.add("frame_sets_without_imu", counters.frame_sets_without_imu)
+      .add("estimation_failures", counters.estimation_failures)
+      .add("time_jumps", counters.time_jumps)
+      .add("rejected_imu", counters.rejected_imu)
+      .add("late_images", counters.late_images)
+      .add("rejected_images", counters.rejected_images)
+      .add("undecodable_images", undecodable_images);
+  JsonObject values;
+  for (const auto& [name, value] : parameterValues(parameters)) values.add(name, parameterJson(value));
+
+  std::ofstream file(path);
+  file << "{\n  \"frames\": " << frames_ << ",\n  \"poses\": " << poses << ",\n  \"images\": " << images
+       << ",\n  \"imu_samples\": " << imu_samples << ",\n  \"coast_ticks\": " << coast_ticks_
+       << ",\n  \"keyframes\": " << keyframes_ << ",\n  \"odom_epochs\": " << odom_epoch_ + 1
+       << ",\n  \"tracks_median\": " << quantile(tracks_, 0.5) << ",\n  \"inliers_median\": " << quantile(inliers_, 0.5)
+       << ",\n  \"wall_s\": " << std::chrono::duration<double>(Clock::now() - begin_).count()
+       << ",\n  \"cpu_s\": " << cpuSeconds() << ",\n  \"peak_memory_mb\": " << peakMemoryMb()
+       << ",\n  \"stages\": " << times.str() << ",\n  \"status\": " << JsonObject::counts(statuses_)
+       << ",\n  \"scale_state\": " << JsonObject::counts(scale_states_)
+       << ",\n  \"solver\": " << JsonObject::counts(solvers_) << ",\n  \"faults\": " << faults.str()
+       << ",\n  \"parameters\": " << values.str() << "\n}\n";
+  file.close();
+  if (!file) throw std::runtime_error("'" + path + "' cannot be written");
+}
+
+std::string RunReport::summary() const {
+  std::ostringstream text;
+  const double wall_s = std::chrono::duration<double>(Clock::now() - begin_).count();
+  text << std::fixed << std::setprecision(1) << frames_ << " frames, " << poses << " poses, " << wall_s << " s ("
+       << cpuSeconds() << " s of CPU, " << peakMemoryMb() << " MB); tracks " << std::setprecision(0)
+       << quantile(tracks_, 0.5) << ", inliers " << quantile(inliers_, 0.5) << " (medians)\n"
+       << std::setprecision(2);
+  for (const auto& [stage, values] : times_ms_) {
+    text << "  " << std::left << std::setw(10) << stage << " median " << quantile(values, 0.5) << " ms, p99 "
+         << quantile(values, 0.99) << " ms\n";
+  }
+  return text.str();
+}
+
+}  // namespace multicam_egomotion
