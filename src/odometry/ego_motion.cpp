@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_buffer.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/feature_report.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 #include "multicam_egomotion/odometry/published_pose.h"
@@ -35,41 +35,6 @@ constexpr double kImuHistory = 3.0;            // kept before the newest frame [
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
 
-void require(bool ok, const std::string& name, const std::string& found, const std::string& expected) {
-  if (!ok) throw std::invalid_argument("parameter " + name + " is " + found + ", expected " + expected);
-}
-
-void check(const EgoMotionOptions& options) {
-  require(options.solver == "auto" || options.solver == "4pt-vertical" || options.solver == "4pt-axis", "solver",
-          options.solver, "auto, 4pt-vertical or 4pt-axis");
-  require(options.imu_orientation == "filter" || options.imu_orientation == "message", "imu_orientation",
-          options.imu_orientation, "filter or message");
-  require(options.on_time_jump == "reset" || options.on_time_jump == "continue", "on_time_jump", options.on_time_jump,
-          "reset or continue");
-  const auto positive = [](double value, const char* name) {
-    require(std::isfinite(value) && value > 0.0, name, std::to_string(value), "a positive number");
-  };
-  positive(options.max_imu_wait_s, "max_imu_wait_s");
-  positive(options.max_coast_s, "max_coast_s");
-  positive(options.max_tilt_correction_rate, "max_tilt_correction_rate");
-  positive(options.constant_rate_sigma, "constant_rate_sigma");
-  positive(options.initial_velocity_sigma, "initial_velocity_sigma");
-  positive(options.ransac.max_epipolar_error_px, "ransac/max_epipolar_error_px");
-  positive(options.window.initial_pixel_sigma, "window/initial_pixel_sigma");
-  require(options.window.max_keyframes >= 2 && options.window.max_keyframes <= 30, "window/max_keyframes",
-          std::to_string(options.window.max_keyframes), "2 to 30");
-}
-
-// Position [m^2] and rotation [rad^2] covariance after a motion that is independent of the pose before.
-Matrix6d propagateCovariance(const Matrix6d& covariance, const Eigen::Isometry3d& T_odom_previous,
-                             const Eigen::Isometry3d& T_previous_body, const Matrix6d& motion_covariance) {
-  Matrix6d F = Matrix6d::Identity();
-  F.topRightCorner<3, 3>() = -skew(T_odom_previous.linear() * T_previous_body.translation());
-  Matrix6d G = Matrix6d::Zero();
-  G.topLeftCorner<3, 3>() = G.bottomRightCorner<3, 3>() = T_odom_previous.linear();
-  return F * covariance * F.transpose() + G * motion_covariance * G.transpose();
-}
-
 }  // namespace
 
 class EgoMotion::Impl {
@@ -80,7 +45,7 @@ class EgoMotion::Impl {
         assembler_(rig.size(), options.assembler, timeOffsets(rig)),
         tracker_(rig, options.tracker),
         window_(options.window) {
-    check(options);
+    validate(options);
     options_.inertial.initial_velocity_sigma = options.initial_velocity_sigma;
     if (options.use_imu) {
       auto motion =
@@ -234,7 +199,7 @@ class EgoMotion::Impl {
     last_stamp_ns_ = set.stamp_ns;
     last_output_ns_ = set.stamp_ns;
     fillState(*motion_, &result);
-    fillFeatures(newest, &result);
+    result.features = reportFeatures(previous_.frame, newest.frame, inlier_tracks_);
     previous_ = std::move(newest);
     stage("frame");
   }
@@ -349,11 +314,8 @@ class EgoMotion::Impl {
   void followVertical(const Eigen::Vector3d& window_position, double dt) {
     settled_ =
         settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
-    const Eigen::Matrix3d turn =
-        settled_
-            ? tiltCorrection(published_.pose().linear(), motion_->up(), options_.max_tilt_correction_rate, dt)
-            : Eigen::Quaterniond::FromTwoVectors(published_.pose().linear() * motion_->up(), Eigen::Vector3d::UnitZ())
-                  .toRotationMatrix();
+    Eigen::Matrix3d turn = tiltCorrection(published_.pose().linear(), motion_->up(), motion_->tiltSigma());
+    if (settled_) turn = slowed(turn, options_.max_tilt_correction_rate, dt);
     published_.turn(turn);
     window_.rotateAbout(window_position, turn);
   }
@@ -362,10 +324,7 @@ class EgoMotion::Impl {
   void bridge(const PosedFrame& newest, const MotionSummary& motion, EgoMotionResult* result) {
     ++counters_.estimation_failures;
     inlier_tracks_.clear();
-    Matrix6d motion_covariance = Matrix6d::Zero();
-    motion_covariance.topLeftCorner<3, 3>() = motion.translation_covariance;
-    const Eigen::Matrix3d& R = motion.T_a_b.linear();
-    motion_covariance.bottomRightCorner<3, 3>() = R * motion.rotation_covariance * R.transpose();
+    const Matrix6d motion_covariance = poseCovariance(motion);
     covariance_ = propagateCovariance(covariance_, published_.pose(), motion.T_a_b, motion_covariance);
     published_.move(motion.T_a_b);
     startWindow(newest);
@@ -404,10 +363,7 @@ class EgoMotion::Impl {
     result.status = coastStatus(stamp_ns);
     result.has_pose = result.status == EgoMotionStatus::kCoasting;
     const MotionSummary motion = model.motionSinceFrame();
-    Matrix6d motion_covariance = Matrix6d::Zero();
-    motion_covariance.topLeftCorner<3, 3>() = motion.translation_covariance;
-    const Eigen::Matrix3d& R = motion.T_a_b.linear();
-    motion_covariance.bottomRightCorner<3, 3>() = R * motion.rotation_covariance * R.transpose();
+    const Matrix6d motion_covariance = poseCovariance(motion);
     fillState(model, &result);
     result.T_odom_body.covariance =
         propagateCovariance(result.T_odom_body.covariance, published_.pose(), motion.T_a_b, motion_covariance);
@@ -434,25 +390,6 @@ class EgoMotion::Impl {
     result->twist = model.twist();
     result->gyroscope_bias = model.gyroscopeBias();
     result->accelerometer_bias = model.accelerometerBias();
-  }
-
-  void fillFeatures(const PosedFrame& newest, EgoMotionResult* result) const {
-    const auto& before = previous_.frame.observations;
-    for (const FeatureObservation& feature : newest.frame.observations) {
-      FeatureReport report;
-      report.track = feature.track;
-      report.camera = feature.camera;
-      report.pixel = report.previous_pixel = feature.pixel;
-      const auto earlier = std::lower_bound(before.begin(), before.end(), feature, [](const auto& a, const auto& b) {
-        return a.track != b.track ? a.track < b.track : a.camera < b.camera;
-      });
-      if (earlier != before.end() && earlier->track == feature.track && earlier->camera == feature.camera) {
-        report.previous_pixel = earlier->pixel;
-        report.is_new = false;
-      }
-      report.inlier = inlier_tracks_.count(feature.track) > 0;
-      result->features.push_back(report);
-    }
   }
 
   static TrackedFrame without(const TrackedFrame& frame, const std::vector<TrackId>& outliers) {

@@ -11,6 +11,7 @@ namespace multicam_egomotion {
 namespace {
 constexpr double kOffsetDecay = 0.5;  // time constant [s], contract 6
 constexpr double kTiltDecay = 2.0;    // [s]
+constexpr double kIgnoredSigmas = 0.5;
 }  // namespace
 
 void PublishedPose::follow(const Eigen::Isometry3d& T_window_previous, const Eigen::Isometry3d& T_window_body,
@@ -26,14 +27,28 @@ void PublishedPose::follow(const Eigen::Isometry3d& T_window_previous, const Eig
   pose_.translation() = moved.translation();
 }
 
-Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double max_rate,
-                               double dt) {
-  const Eigen::Vector3d up_odom = (R_odom_body * up).normalized();
-  const Eigen::Vector3d axis = up_odom.cross(Eigen::Vector3d::UnitZ());
-  const double angle = std::atan2(axis.norm(), up_odom.z());
-  if (angle < 1e-9 || axis.norm() < 1e-12) return Eigen::Matrix3d::Identity();
-  const double turn = std::min(angle * (1.0 - std::exp(-dt / kTiltDecay)), max_rate * dt);
-  return expSO3(axis.normalized() * turn);
+Matrix6d propagateCovariance(const Matrix6d& covariance, const Eigen::Isometry3d& T_odom_previous,
+                             const Eigen::Isometry3d& T_previous_body, const Matrix6d& motion_covariance) {
+  Matrix6d F = Matrix6d::Identity();
+  F.topRightCorner<3, 3>() = -skew(T_odom_previous.linear() * T_previous_body.translation());
+  Matrix6d G = Matrix6d::Zero();
+  G.topLeftCorner<3, 3>() = G.bottomRightCorner<3, 3>() = T_odom_previous.linear();
+  return F * covariance * F.transpose() + G * motion_covariance * G.transpose();
+}
+
+Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double sigma) {
+  const Eigen::Vector3d error =
+      logSO3(Eigen::Quaterniond::FromTwoVectors(R_odom_body * up, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  const double angle = error.norm();
+  const double excess = angle - kIgnoredSigmas * sigma;
+  return excess > 0.0 ? expSO3(error * (excess / angle)) : Eigen::Matrix3d::Identity();
+}
+
+Eigen::Matrix3d slowed(const Eigen::Matrix3d& correction, double max_rate, double dt) {
+  const Eigen::Vector3d vector = logSO3(correction);
+  const double angle = vector.norm();
+  if (angle < 1e-12) return Eigen::Matrix3d::Identity();
+  return expSO3(vector * (std::min(angle * (1.0 - std::exp(-dt / kTiltDecay)), max_rate * dt) / angle));
 }
 
 }  // namespace multicam_egomotion

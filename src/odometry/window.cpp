@@ -33,16 +33,6 @@ Eigen::Matrix3d informationOf(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-MotionSummary compose(const MotionSummary& a_b, const MotionSummary& b_c) {
-  MotionSummary a_c;
-  const Eigen::Matrix3d R_a_b = a_b.T_a_b.linear(), R_b_c = b_c.T_a_b.linear();
-  a_c.T_a_b = a_b.T_a_b * b_c.T_a_b;
-  a_c.rotation_covariance = R_b_c.transpose() * a_b.rotation_covariance * R_b_c + b_c.rotation_covariance;
-  a_c.translation_covariance = a_b.translation_covariance + R_a_b * b_c.translation_covariance * R_a_b.transpose();
-  a_c.use_translation = a_b.use_translation || b_c.use_translation;
-  return a_c;
-}
-
 Window::Window(const WindowOptions& options) : options_(options), pixel_sigma_(options.initial_pixel_sigma) {}
 
 void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,

@@ -366,9 +366,9 @@ TEST(BundleAdjustment, FixedLandmarksStayAndFreeAllPoses) {
   BundleScene scene = makeBundleScene(2, 60, stereoCenters(), 0.0, 14);
   Noise noise(15);
   perturbPoses(&scene, 0.05, 0.02, &noise);
-  scene.bundle.fix_landmarks = true;
   const std::vector<BundleLandmark> before = scene.bundle.landmarks;
   BundleOptions options = unbiasedOptions();
+  options.fix_landmarks = true;
   options.max_iterations = 15;
   options.relative_decrease = 1e-12;
   EXPECT_TRUE(scene.bundle.solve(options).finite);

@@ -99,7 +99,7 @@ TEST(TiltCorrection, IsLimitedInRateAndEndsUpright) {
   const Eigen::Vector3d up = R.transpose() * expSO3({0.02, 0.025, 0.0}) * Eigen::Vector3d::UnitZ();
   double last = std::acos((R * up).z());
   for (int i = 0; i < 600; ++i) {
-    const Eigen::Matrix3d turn = tiltCorrection(R, up, max_rate, kPeriod);
+    const Eigen::Matrix3d turn = slowed(tiltCorrection(R, up, 0.0), max_rate, kPeriod);
     EXPECT_LE(logSO3(turn).norm(), max_rate * kPeriod * (1.0 + 1e-9));
     EXPECT_LT(std::abs(logSO3(turn).z()), 1e-12) << "yaw is not gravity's";
     R = turn * R;
@@ -108,11 +108,17 @@ TEST(TiltCorrection, IsLimitedInRateAndEndsUpright) {
     last = now;
   }
   EXPECT_LT(last, 1e-4);
-  EXPECT_LT(logSO3(tiltCorrection(R, R.transpose() * Eigen::Vector3d::UnitZ(), max_rate, kPeriod)).norm(), 1e-9);
+  EXPECT_LT(logSO3(tiltCorrection(R, R.transpose() * Eigen::Vector3d::UnitZ(), 0.0)).norm(), 1e-9);
+}
+
+TEST(TiltCorrection, LeavesWhatIsWithinHalfASigma) {
+  const Eigen::Vector3d up = expSO3({0.02, 0.0, 0.0}) * Eigen::Vector3d::UnitZ();
+  EXPECT_LT(logSO3(tiltCorrection(Eigen::Matrix3d::Identity(), up, 0.05)).norm(), 1e-12);
+  EXPECT_NEAR(logSO3(tiltCorrection(Eigen::Matrix3d::Identity(), up, 0.02)).norm(), 0.01, 1e-9);
 }
 
 TEST(TiltCorrection, UpsideDownIsNoNaN) {
-  const Eigen::Matrix3d turn = tiltCorrection(Eigen::Matrix3d::Identity(), -Eigen::Vector3d::UnitZ(), 0.01, kPeriod);
+  const Eigen::Matrix3d turn = tiltCorrection(Eigen::Matrix3d::Identity(), -Eigen::Vector3d::UnitZ(), 0.01);
   EXPECT_TRUE(turn.allFinite());
   EXPECT_LT((turn.transpose() * turn - Eigen::Matrix3d::Identity()).norm(), 1e-12);
 }

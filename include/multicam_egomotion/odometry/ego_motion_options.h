@@ -34,4 +34,8 @@ struct EgoMotionOptions {
   WindowOptions window;
 };
 
+/// Throws std::invalid_argument (name, found, expected) on options that cannot be; those of the parts are checked by
+/// them.
+void validate(const EgoMotionOptions& options);
+
 }  // namespace multicam_egomotion

@@ -30,8 +30,8 @@ struct FrameConsensus {
 };
 
 /// RANSAC between the previous and the newest frame. `solver`: auto, 4pt-vertical or 4pt-axis (contract 8), but where
-/// only one camera sees anything its translation is found with the predicted rotation (2pt-translation). `up`: the vertical
-/// in body axes at the previous frame.
+/// only one camera sees anything its translation is found with the predicted rotation (2pt-translation). `up`: the
+/// vertical in body axes at the previous frame.
 FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newest, const MotionSummary& motion,
                              const Eigen::Vector3d& up, const std::string& solver,
                              const RobustEstimatorOptions& options, std::uint64_t seed);

@@ -26,9 +26,16 @@ class PublishedPose {
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
 };
 
-/// Rotation in odom axes that takes the vertical `up` (body axes) of a body with attitude R_odom_body towards z: the
-/// error low-pass filtered over two seconds, at most `max_rate` [rad/s] for `dt` [s].
-Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double max_rate,
-                               double dt);
+/// Covariance (as PoseWithCovariance) of a pose after a motion that is independent of it.
+Matrix6d propagateCovariance(const Matrix6d& covariance, const Eigen::Isometry3d& T_odom_previous,
+                             const Eigen::Isometry3d& T_previous_body, const Matrix6d& motion_covariance);
+
+/// Rotation in odom axes that takes the vertical `up` (body axes, known to `sigma` per axis [rad]) of a body with
+/// attitude R_odom_body towards z. The part of the error that is less than half a sigma is left alone: to follow it
+/// would only be to follow noise.
+Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double sigma);
+
+/// `correction` low-pass filtered over two seconds, at most `max_rate` [rad/s] for `dt` [s].
+Eigen::Matrix3d slowed(const Eigen::Matrix3d& correction, double max_rate, double dt);
 
 }  // namespace multicam_egomotion

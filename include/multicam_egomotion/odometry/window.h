@@ -9,6 +9,7 @@
 
 #include "multicam_egomotion/estimation/bundle_adjustment.h"
 #include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/odometry/motion_summary.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
@@ -23,17 +24,6 @@ struct WindowOptions {
   double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
   BundleOptions bundle;
 };
-
-/// What is known of the motion from one state to the next without vision (contract 6: IMU summary).
-struct MotionSummary {
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();               ///< predicted motion of the body
-  Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Identity();     ///< of d in R = R_a_b Exp(d) [rad^2]
-  Eigen::Matrix3d translation_covariance = Eigen::Matrix3d::Identity();  ///< in the axes of a [m^2]
-  bool use_translation = false;  ///< vision could not see scale: the displacement enters the estimate
-};
-
-/// The motion from a to c of the motions a to b and b to c.
-MotionSummary compose(const MotionSummary& a_b, const MotionSummary& b_c);
 
 /// Relative motion of the body between the last two frames with what is known of it.
 struct RelativeMotion {
@@ -102,8 +92,8 @@ class Window {
 
   WindowOptions options_;
   double pixel_sigma_;
-  /// Share of pixel_sigma_'s variance that counts in the motion between two frames: much of a tracked patch's error is the
-  /// same in both and cancels, and pixel_sigma_ has a floor for what calibration leaves.
+  /// Share of pixel_sigma_'s variance that counts in the motion between two frames: much of a tracked patch's error is
+  /// the same in both and cancels, and pixel_sigma_ has a floor for what calibration leaves.
   double white_share_ = 1.0;
   int noise_measurements_ = 0;
   std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
