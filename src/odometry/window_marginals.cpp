@@ -3,6 +3,8 @@
 #include "multicam_egomotion/odometry/window_marginals.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -112,7 +114,9 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   const Eigen::Vector3d direction =
       distance > 0.0 ? Eigen::Vector3d(estimate->relative.T_a_b.translation() / distance) : Eigen::Vector3d::UnitX();
   const double along = direction.dot(translation_covariance * direction);
-  const double across = std::sqrt(std::max(0.0, 0.5 * (translation_covariance.trace() - along)));
+  // The unseen direction is that of the cameras' motion, which the lever arm sets apart from the body's.
+  const Eigen::Vector3d spread = translation_covariance.selfadjointView<Eigen::Lower>().eigenvalues();
+  const double across = std::sqrt(std::max(0.0, 0.5 * (spread[0] + spread[1])));
   estimate->scale_sigma =
       distance > 0.0 ? std::sqrt(std::max(0.0, along)) / distance : std::numeric_limits<double>::infinity();
   // Without motion there is no scale. The noise across the motion decides, for along it the scale itself is unknown.

@@ -104,6 +104,7 @@ void visitParameters(Parameters& p, Visitor& v) {
   v("window/outlier_sigmas", w.outlier_sigmas, 1, 100);
   v("window/bundle/max_iterations", w.bundle.max_iterations, 1, 1000);
   v("window/bundle/relative_decrease", w.bundle.relative_decrease, 0, 1);
+  v("window/bundle/inverse_distance_sigma", w.bundle.inverse_distance_sigma, 0.01, 1000);
   v("window/bundle/robust_width", w.bundle.robust_width, 0.01, 1000);
 }
 

@@ -79,7 +79,7 @@ Simulator* EgoMotionTest::simulator_ = nullptr;
 Recording* EgoMotionTest::recording_ = nullptr;
 
 void blank(std::vector<CameraImage>* images) {
-  for (CameraImage& image : *images) image.grey = cv::Mat::zeros(image.grey.size(), image.grey.type());
+  for (CameraImage& image : *images) image.grey = cv::Mat(image.grey.size(), image.grey.type(), cv::Scalar(0));
 }
 
 TEST_F(EgoMotionTest, GivesAPoseForEveryFrameFromTheSecondOn) {
@@ -245,7 +245,7 @@ TEST_F(EgoMotionTest, SurvivesNaNAndDarkness) {
   const auto dark = [](int frame, std::vector<CameraImage>* images) {
     if (frame == 12 || frame == 13) blank(images);
     if (frame == 16) images->pop_back();
-    if (frame == 18) (*images)[1].grey = cv::Mat::zeros(10, 10, CV_8UC1);  // the wrong size
+    if (frame == 18) (*images)[1].grey = cv::Mat(10, 10, CV_8UC1, cv::Scalar(0));  // the wrong size
   };
   std::vector<EgoMotionResult> results = player.play(odometry.get(), 0, kFrames, dark);
   for (const EgoMotionResult& one : odometry->finish()) results.push_back(one);

@@ -134,12 +134,13 @@ TEST(Window, StandingStaysWhereItIs) {
     return m;
   });
   WindowRunOptions options;
-  options.tracks.tracks_per_camera = 80;
+  options.tracks.tracks_per_camera = 120;
+  options.tracks.loss_share = 0.002;  // what stands still is hardly lost
   options.speed_sigma = 0.1;
   const WindowRun run = runWindow(scenario, options);
   EXPECT_EQ(run.failures, 0);
   EXPECT_LT(run.largest_position_error, 0.002);
-  EXPECT_GT(run.states.at(ScaleState::kNotApplicable), 0.95 * run.frames);
+  EXPECT_GT(run.states.at(ScaleState::kNotApplicable), 0.9 * run.frames);
 }
 
 // A window some frames into a run, with what the next frame needs.
@@ -177,18 +178,21 @@ TEST(Window, VisionAloneDoesNotDependOnTheGyroscope) {
   WindowRunOptions options;
   options.tracks.tracks_per_camera = 60;
   const Prepared prepared = prepare(15, options);
-  Window honest = prepared.window, misled = prepared.window;
-  MotionSummary wrong = prepared.motion;
-  wrong.T_a_b.linear() = wrong.T_a_b.linear() * expSO3({0.003, -0.002, 0.002});
   const std::vector<Eigen::Isometry3d> guesses = {prepared.motion.T_a_b};
+  Window honest = prepared.window;
   const WindowEstimate one = honest.add(prepared.next, prepared.T_body_cam, prepared.motion, guesses);
-  const WindowEstimate other = misled.add(prepared.next, prepared.T_body_cam, wrong, guesses);
   const auto angle = [](const RelativeMotion& a, const RelativeMotion& b) {
     return logSO3(a.T_a_b.linear().transpose() * b.T_a_b.linear()).norm();
   };
-  EXPECT_GT(angle(one.relative, other.relative), 1e-4);
-  EXPECT_LT(angle(one.vision, other.vision), 0.1 * angle(one.relative, other.relative));
-  EXPECT_LT((one.vision.covariance - other.vision.covariance).norm(), 0.1 * one.vision.covariance.norm());
+  for (double error : {5e-4, 1.5e-3}) {
+    Window misled = prepared.window;
+    MotionSummary wrong = prepared.motion;
+    wrong.T_a_b.linear() = wrong.T_a_b.linear() * expSO3(error * Eigen::Vector3d(0.7, -0.5, 0.5));
+    const WindowEstimate other = misled.add(prepared.next, prepared.T_body_cam, wrong, guesses);
+    EXPECT_GT(angle(one.relative, other.relative), 0.2 * error);
+    EXPECT_LT(angle(one.vision, other.vision), 0.1 * angle(one.relative, other.relative)) << "error " << error;
+    EXPECT_LT((one.vision.covariance - other.vision.covariance).norm(), 0.1 * one.vision.covariance.norm());
+  }
 }
 
 TEST(Window, TurningEverythingChangesNoMotion) {
