@@ -15,7 +15,9 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr double kLeastBaseline = 1e-3;  // stands for a motion that is not known at all [m]
-constexpr double kAxisSigmas = 20.0;     // the axis is used where the angle exceeds this many sigmas of its error
+// The vertical at t2 follows from the predicted rotation; when that is worse than this, from a first estimate [rad].
+constexpr double kWideRotation = 0.0175;
+constexpr double kAxisSigmas = 20.0;  // the axis is used where the angle exceeds this many sigmas of its error
 
 struct FourPointVertical {
   static constexpr int kSampleSize = 4;
@@ -132,6 +134,12 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
   } else {
     consensus.solver = "4pt-vertical";
     estimated = estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), rotation, options, seed);
+    if (angle_sigma > kWideRotation && estimated.success) {
+      const Eigen::Matrix3d R = estimated.R;
+      const RobustEstimate again =
+          estimate<FourPointVertical>(set, verticalPriorFromUp(up, R * up), rotation, options, seed);
+      if (again.score < estimated.score) estimated = again;
+    }
   }
   consensus.success = estimated.success;
   consensus.samples = estimated.samples;

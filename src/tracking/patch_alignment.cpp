@@ -144,7 +144,8 @@ bool PatchTemplate::cut(const cv::Mat& image, const PatchWarp& warp, int size, W
 bool PatchTemplate::align(const cv::Mat& image, const PatchAlignmentOptions& options, PatchWarp* warp,
                           double* correlation) const {
   Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPixels, 1> samples(size_ * size_);
-  Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxParameters + 1, 1> products(parameters_ + 1);
+  Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxParameters + 1, 1> products =
+      Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxParameters + 1, 1>::Zero(parameters_ + 1);
   PatchWarp current = *warp;
   bool converged = false;
   for (int iteration = 0; iteration < options.max_iterations && !converged; ++iteration) {
