@@ -63,7 +63,7 @@ bag=$demo/input.bag
 truth=$demo/input.groundtruth.tum
 if [[ -z $input ]]; then
   echo "Simulating handheld_stereo"
-  rosrun multicam_egomotion egomotion_sim handheld_stereo "$bag"
+  "$build/devel/lib/multicam_egomotion/egomotion_sim" handheld_stereo "$bag"
 elif [[ -f $input ]]; then
   bag=$input
   truth=${input%.bag}.groundtruth.tum

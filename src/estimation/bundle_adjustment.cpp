@@ -104,7 +104,7 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
   b->setZero(size);
   blocks_.resize(landmarks.size());
   couplings_.clear();
-  weight_sum_ = weighted_squares_ = 0.0;
+  weight_sum_ = weight_square_sum_ = weighted_squares_ = 0.0;
   const double inverse_sigma = 1.0 / pixel_sigma;
   const double distance_information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
 
@@ -133,6 +133,7 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
       const double square = residual.squaredNorm();
       const double weight = robustWeight(square, options.robust_width);
       weight_sum_ += weight;
+      weight_square_sum_ += weight * weight;
       weighted_squares_ += weight * square;
 
       Eigen::Matrix<double, 2, 3> d_x = observation.to_pixel * (inverse_sigma / depth);

@@ -11,7 +11,9 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr int kMaxRefinements = 6;  // of one new best model
+// Thresholds of the local optimization's rounds, in those of an inlier; it ends when a round gains less than 1 %.
+constexpr double kThresholdFactors[] = {3.0, 1.5, 1.0, 1.0, 1.0};
+constexpr double kWorthwhile = 0.99;
 
 // Grouped positions of the correspondences whose squared error is below the threshold.
 std::vector<int> inlierPositions(const std::vector<double>& squared_errors, double squared_threshold) {
@@ -27,6 +29,35 @@ double samplesNeeded(double inlier_share, int sample_size, double success_probab
   const double all_inliers = std::pow(inlier_share, sample_size);
   if (all_inliers >= 1.0) return 1.0;
   return std::log1p(-success_probability) / std::log1p(-all_inliers);
+}
+
+struct RefinedModel {
+  Eigen::Matrix3d R;
+  Eigen::Vector3d t;
+  double score;
+};
+
+// Local optimization over the inliers of a threshold that narrows to the final one: a minimal model is too crude to
+// have all inliers within it. Returns the number of refinements.
+int refine(const CorrespondenceSet& set, const RotationPrior& prior, const RobustEstimatorOptions& options,
+           RefinedModel* model) {
+  const double squared_threshold = options.max_epipolar_error_px * options.max_epipolar_error_px;
+  std::vector<double> errors;
+  RefinedModel current = *model;
+  int rounds = 0;
+  double last = std::numeric_limits<double>::infinity();
+  for (double factor : kThresholdFactors) {
+    set.squaredSampsonErrors(current.R, current.t, &errors);
+    const std::vector<int> support = inlierPositions(errors, factor * factor * squared_threshold);
+    ++rounds;
+    if (!refineTwoView(set, support, prior, options.refinement, &current.R, &current.t)) break;
+    current.score =
+        set.score(current.R, current.t, squared_threshold, std::numeric_limits<double>::infinity(), &errors);
+    if (current.score < model->score) *model = current;
+    if (factor == 1.0 && current.score > kWorthwhile * last) break;
+    last = current.score;
+  }
+  return rounds;
 }
 
 }  // namespace
@@ -45,6 +76,7 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
   std::vector<RelativePose> models;
   std::vector<double> errors;
   double needed = options.max_samples;
+  double best_minimal_score = std::numeric_limits<double>::infinity();
 
   while (best.samples < options.max_samples && (best.samples < options.min_samples || best.samples < needed)) {
     ++best.samples;
@@ -54,33 +86,21 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
       const Eigen::Vector3d difference = logSO3(model.R * rotation_prior.R.transpose());
       if (difference.dot(rotation_prior.information * difference) > max_rotation_square) continue;
       ++best.models;
-      const double score = set.score(model.R, model.t, squared_threshold, best.score, &errors);
-      if (!(score < best.score)) continue;
-      best.score = score;
-      best.R = model.R;
-      best.t = model.t;
+      // A minimal model is refined when it is better than the other minimal models were: against a refined one it
+      // could hardly win.
+      const double score = set.score(model.R, model.t, squared_threshold, best_minimal_score, &errors);
+      if (!(score < best_minimal_score)) continue;
+      best_minimal_score = score;
+      RefinedModel refined{model.R, model.t, score};
+      best.refinements += refine(set, rotation_prior, options, &refined);
+      if (!(refined.score < best.score)) continue;
+      best.score = refined.score;
+      best.R = refined.R;
+      best.t = refined.t;
       best.success = true;
-
-      // Local optimization: the new best, refined over its inliers as long as that gains more.
       set.squaredSampsonErrors(best.R, best.t, &errors);
-      std::vector<int> support = inlierPositions(errors, squared_threshold);
-      for (int round = 0; round < kMaxRefinements; ++round) {
-        Eigen::Matrix3d R = best.R;
-        Eigen::Vector3d t = best.t;
-        ++best.refinements;
-        if (!refineTwoView(set, support, rotation_prior, options.refinement, &R, &t)) break;
-        const double refined = set.score(R, t, squared_threshold, best.score, &errors);
-        if (!(refined < best.score)) break;
-        const bool converged = refined > 0.99 * best.score;
-        best.score = refined;
-        best.R = R;
-        best.t = t;
-        set.squaredSampsonErrors(R, t, &errors);
-        support = inlierPositions(errors, squared_threshold);
-        if (converged) break;
-      }
-      const double inlier_share = static_cast<double>(support.size()) / set.size();
-      needed = samplesNeeded(inlier_share, sample_size, options.success_probability);
+      const double inliers = static_cast<double>(inlierPositions(errors, squared_threshold).size());
+      needed = samplesNeeded(inliers / set.size(), sample_size, options.success_probability);
     }
   }
   if (!best.success) return best;

@@ -19,6 +19,7 @@ constexpr double kWeakestInformation =
 
 // Calibration and tracking leave errors that do not average out over a window; scale is not seen through less [px].
 constexpr double kSystematicError = 0.25;
+constexpr double kEvenlySeen = 5.0;  // ratio of the noise along and across up to which all directions count as seen
 constexpr double kUnknownInverseDistance = 100.0;  // sigma that says nothing of a point's distance [1/m]
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
@@ -74,6 +75,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   Eigen::MatrixXd vision_H, rest_H;
   Eigen::VectorXd vision_b, rest_b;
   bundle->linearize(&vision_H, &vision_b, &rest_H, &rest_b, options);
+  const double newton_gain = bundle->newtonGain();
   const int n = static_cast<int>(bundle->poses.size());
   const BundlePose& previous = bundle->poses[n - 2];
   const BundlePose& newest = bundle->poses[n - 1];
@@ -95,7 +97,8 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   estimate->relative.covariance = J * solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance * J.transpose();
 
   // From the images alone.
-  const LastTwo vision = solveLastTwo(vision_H, vision_b, 6);
+  LastTwo vision = solveLastTwo(vision_H, vision_b, 6);
+  vision.step *= newton_gain;
   estimate->vision.T_a_b =
       relativePose(retract(previous, vision.step.head<6>()), retract(newest, vision.step.tail<6>()));
   estimate->vision.covariance = J * vision.covariance * J.transpose();
@@ -116,11 +119,13 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   const double along = direction.dot(translation_covariance * direction);
   // The unseen direction is that of the cameras' motion, which the lever arm sets apart from the body's.
   const Eigen::Vector3d spread = translation_covariance.selfadjointView<Eigen::Lower>().eigenvalues();
-  const double across = std::sqrt(std::max(0.0, 0.5 * (spread[0] + spread[1])));
+  const double least = std::sqrt(std::max(0.0, 0.5 * (spread[0] + spread[1])));
+  const double most = std::sqrt(std::max(0.0, spread[2]));
+  const double noise = most < kEvenlySeen * least ? most : least;
   estimate->scale_sigma =
       distance > 0.0 ? std::sqrt(std::max(0.0, along)) / distance : std::numeric_limits<double>::infinity();
-  // Without motion there is no scale. The noise across the motion decides, for along it the scale itself is unknown.
-  estimate->scale_state = distance < 3.0 * across                    ? ScaleState::kNotApplicable
+  // Without motion there is no scale. Where the scale is unknown, the noise across the motion decides.
+  estimate->scale_state = distance < 3.0 * noise                     ? ScaleState::kNotApplicable
                           : estimate->scale_sigma < kObservableScale ? ScaleState::kObservable
                           : estimate->scale_sigma < kWeakScale       ? ScaleState::kWeak
                                                                      : ScaleState::kUnobservable;

@@ -10,6 +10,7 @@ import unittest
 import rosnode
 import rospy
 import rostest
+from roslib.packages import find_node
 
 RIG = sys.argv[1] if len(sys.argv) > 1 else ""
 
@@ -24,7 +25,7 @@ class BadConfiguration(unittest.TestCase):
         name = self.id().rsplit(".", 1)[-1]  # of its own: parameters stay on the server
         for key, value in parameters.items():
             rospy.set_param(f"/{name}/{key}", value)
-        code, output = run(["rosrun", "multicam_egomotion", "egomotion_node", f"__name:={name}"])
+        code, output = run(find_node("multicam_egomotion", "egomotion_node") + [f"__name:={name}"])
         self.assertEqual(code, 1, output)
         for word in words:
             self.assertIn(word, output)

@@ -31,6 +31,19 @@ RelativeMotion seen(const Eigen::Isometry3d& T, double position_sigma, double ro
 constexpr std::int64_t kPeriod = 50000000;
 const Eigen::Isometry3d kStep = motion({0.05, 0.01, -0.02}, {0.01, 0.02, 0.03});
 
+TEST(MotionSummary, PoseCovarianceTurnsTheRotationIntoTheAxesOfTheFirst) {
+  MotionSummary summary;
+  summary.T_a_b = motion({1.0, 0.0, 0.0}, {0.4, -0.2, 0.7});
+  summary.rotation_covariance = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal();
+  summary.translation_covariance = Eigen::Vector3d(2.0, 3.0, 5.0).asDiagonal();
+  const Matrix6d covariance = poseCovariance(summary);
+  const Eigen::Matrix3d& R = summary.T_a_b.linear();
+  // d in R Exp(d) = Exp(R d) R.
+  const Eigen::Matrix3d expected = R * summary.rotation_covariance * R.transpose();
+  EXPECT_LT((covariance.bottomRightCorner<3, 3>() - expected).norm(), 1e-12);
+  EXPECT_LT((covariance.topLeftCorner<3, 3>() - summary.translation_covariance).norm(), 1e-12);
+}
+
 TEST(ConstantRateMotion, StartsWithNothingKnown) {
   ConstantRateMotion model(0.0524, 5.0);
   EXPECT_FALSE(model.initialized());

@@ -92,6 +92,34 @@ TEST(PublishedPose, TheRotationStaysARotation) {
   EXPECT_LT((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 1e-12);
 }
 
+TEST(PublishedPose, CovarianceGrowsAsThePoseDoes) {
+  // Against numeric differences: R_true = Exp(dtheta) R, positions additive.
+  const Eigen::Isometry3d before = pose({1.0, 2.0, 3.0}, {0.3, -0.5, 1.0}),
+                          step = pose({0.4, -0.2, 0.1}, {0.1, 0.2, -0.3});
+  const auto disturbed = [](const Eigen::Isometry3d& T, const Eigen::Matrix<double, 6, 1>& d) {
+    Eigen::Isometry3d result = T;
+    result.translation() += d.head<3>();
+    result.linear() = expSO3(d.tail<3>()) * T.linear();
+    return result;
+  };
+  const Eigen::Isometry3d after = before * step;
+  Matrix6d by_pose, by_motion;
+  for (int c = 0; c < 6; ++c) {
+    const Eigen::Matrix<double, 6, 1> d = 1e-6 * Eigen::Matrix<double, 6, 1>::Unit(c);
+    for (Matrix6d* J : {&by_pose, &by_motion}) {
+      const Eigen::Isometry3d T = J == &by_pose ? disturbed(before, d) * step : before * disturbed(step, d);
+      J->col(c) << (T.translation() - after.translation()) / 1e-6,
+          logSO3(T.linear() * after.linear().transpose()) / 1e-6;
+    }
+  }
+  Matrix6d A = Matrix6d::Random(), B = Matrix6d::Random();
+  const Matrix6d pose_covariance = A * A.transpose(), motion_covariance = B * B.transpose();
+  const Matrix6d expected =
+      by_pose * pose_covariance * by_pose.transpose() + by_motion * motion_covariance * by_motion.transpose();
+  const Matrix6d found = propagateCovariance(pose_covariance, before, step, motion_covariance);
+  EXPECT_LT((found - expected).norm(), 1e-5 * expected.norm());
+}
+
 TEST(TiltCorrection, IsLimitedInRateAndEndsUpright) {
   const double max_rate = 0.00873;
   Eigen::Matrix3d R = expSO3({0.03, -0.02, 0.5});

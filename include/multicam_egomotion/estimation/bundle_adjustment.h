@@ -85,6 +85,10 @@ class BundleAdjustment {
   void linearize(Eigen::MatrixXd* vision_H, Eigen::VectorXd* vision_b, Eigen::MatrixXd* rest_H, Eigen::VectorXd* rest_b,
                  const BundleOptions& options, const std::vector<char>* use = nullptr);
 
+  /// Factor by which a Newton step of the last linearization is longer than H^-1 b: reweighting takes the Cauchy loss
+  /// for more curved than it is.
+  double newtonGain() const { return weight_square_sum_ > 0.0 ? weight_sum_ / weight_square_sum_ : 1.0; }
+
   /// Pixel error of an observation [px]; false when the point is behind the camera.
   /// `by_inverse_distance`: its derivative by the landmark's inverse distance [px m], optional.
   bool error(const BundleLandmark& landmark, const BundleObservation& observation, Eigen::Vector2d* error_px,
@@ -110,7 +114,7 @@ class BundleAdjustment {
 
   std::vector<LandmarkBlock> blocks_;
   std::vector<Coupling> couplings_;
-  double weight_sum_ = 0.0, weighted_squares_ = 0.0;
+  double weight_sum_ = 0.0, weight_square_sum_ = 0.0, weighted_squares_ = 0.0;
 };
 
 /// Local difference d with a ⊞ d = b: (dp, dtheta).
