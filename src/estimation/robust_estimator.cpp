@@ -14,6 +14,8 @@ namespace {
 // Thresholds of the local optimization's rounds, in those of an inlier; it ends when a round gains less than 1 %.
 constexpr double kThresholdFactors[] = {3.0, 1.5, 1.0, 1.0, 1.0};
 constexpr double kWorthwhile = 0.99;
+constexpr int kPolishRounds = 3;
+constexpr double kLeastNoise = 0.05;  // [px]
 
 // Grouped positions of the correspondences whose squared error is below the threshold.
 std::vector<int> inlierPositions(const std::vector<double>& squared_errors, double squared_threshold) {
@@ -60,6 +62,29 @@ int refine(const CorrespondenceSet& set, const RotationPrior& prior, const Robus
   return rounds;
 }
 
+// Last refinement, with weights and support by the noise that the inliers show instead of the threshold: it is much
+// less, and outliers that lie within the threshold by chance would bend the result.
+void polish(const CorrespondenceSet& set, const RotationPrior& prior, const RobustEstimatorOptions& options,
+            RobustEstimate* best) {
+  const double squared_threshold = options.max_epipolar_error_px * options.max_epipolar_error_px;
+  std::vector<double> errors;
+  for (int round = 0; round < kPolishRounds; ++round) {
+    set.squaredSampsonErrors(best->R, best->t, &errors);
+    std::vector<double> inliers;
+    for (double error : errors) {
+      if (error < squared_threshold) inliers.push_back(error);
+    }
+    if (static_cast<int>(inliers.size()) < options.min_inliers) return;
+    std::nth_element(inliers.begin(), inliers.begin() + inliers.size() / 2, inliers.end());
+    const double sigma = 1.4826 * std::sqrt(inliers[inliers.size() / 2]);  // of a Gaussian with that median
+    TwoViewRefinementOptions refinement = options.refinement;
+    refinement.robust_width_px = std::min(refinement.robust_width_px, std::max(sigma, kLeastNoise));
+    const double support = std::min(options.max_epipolar_error_px, 4.0 * refinement.robust_width_px);
+    if (!refineTwoView(set, inlierPositions(errors, support * support), prior, refinement, &best->R, &best->t)) return;
+    ++best->refinements;
+  }
+}
+
 }  // namespace
 
 RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, const ModelGenerator& generate,
@@ -104,6 +129,7 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
     }
   }
   if (!best.success) return best;
+  polish(set, rotation_prior, options, &best);
 
   set.squaredSampsonErrors(best.R, best.t, &errors);
   for (int position : inlierPositions(errors, squared_threshold)) {

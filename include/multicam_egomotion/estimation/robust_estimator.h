@@ -18,7 +18,7 @@ struct RobustEstimatorOptions {
   double max_epipolar_error_px = 2.0;  ///< Sampson error of an inlier [px]
   double success_probability = 0.9999;
   int max_samples = 500;
-  int min_samples = 30;
+  int min_samples = 50;
   int min_inliers = 8;
   double max_rotation_sigmas = 5.0;  ///< hypotheses further from the rotation prior are dropped unscored (contract 8)
   TwoViewRefinementOptions refinement;
