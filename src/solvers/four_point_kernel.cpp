@@ -21,7 +21,7 @@ constexpr double kRankTolerance = 1e-6;    // below this F is looked at again wi
 constexpr double kScaleTolerance = 1e-7;   // sine of the rotation, or relative singular value, without scale
 constexpr double kNoParallax = 1e-7;       // [rad]
 constexpr double kSmallestNormal = 1e-14;  // relative singular value of the normals without which t is not finite
-constexpr double kVanishing = 1e-13;       // polynomial against the row norms: rounding alone
+constexpr double kVanishing = 1e-14;       // rounding of a determinant of rows of order 1
 constexpr double kLargestSquare = 1e280;
 
 struct SampleClass {
@@ -77,6 +77,8 @@ namespace build_instructions {
 #include "real_roots.inc"
 //
 #include "four_point_lanes.inc"
+//
+#include "four_point_solve.inc"
 }  // namespace build_instructions
 
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
@@ -86,6 +88,8 @@ namespace avx2_instructions {
 #include "real_roots.inc"
 //
 #include "four_point_lanes.inc"
+//
+#include "four_point_solve.inc"
 }  // namespace avx2_instructions
 #pragma GCC pop_options
 #endif

@@ -280,6 +280,17 @@ TEST(FourPoint, OnePairIsCentral) {
   }
 }
 
+TEST(FourPoint, RepeatedRaysAreCentral) {
+  SampleSimulator simulator(15);
+  for (int i = 0; i < 5000; ++i) {
+    SimulatedSample s = simulator.sample(kKinds[i % 5], Motion::kRandom, 0, 1);
+    s.rays[1] = s.rays[0];
+    for (Solver solver : {Solver::kVertical, Solver::kAxis}) {
+      EXPECT_EQ(solve(solver, s).status, SolverStatus::kCentral) << i;
+    }
+  }
+}
+
 TEST(FourPoint, AxisLengthAndSignDoNotMatter) {
   SampleSimulator simulator(12);
   SimulatedSample s = simulator.sample(SampleKind::kIntra22, Motion::kRandom, 0.1, 0.2);
