@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <unordered_map>
 #include <unordered_set>
 
 #include "multicam_egomotion/geometry/so3.h"
@@ -408,14 +407,11 @@ class EgoMotion::Impl {
       reset(false, nullptr);
       return;
     }
-    restart_pose_ = published_.pose();
-    restart_covariance_ = covariance_;
-    restart_covariance_.diagonal().head<3>().array() += kJumpPositionSigma * kJumpPositionSigma;
-    restart_covariance_.diagonal().tail<3>().array() += kJumpAttitudeSigma * kJumpAttitudeSigma;
-    const Eigen::Isometry3d pose = published_.pose();
-    const Matrix6d covariance = restart_covariance_;
+    Matrix6d covariance = covariance_;
+    covariance.diagonal().head<3>().array() += kJumpPositionSigma * kJumpPositionSigma;
+    covariance.diagonal().tail<3>().array() += kJumpAttitudeSigma * kJumpAttitudeSigma;
     forgetMotion(false);
-    restart_pose_ = pose;
+    restart_pose_ = published_.pose();
     restart_covariance_ = covariance;
     if (inertial_ && stamp_ns > 0) motion_->restartAt(stamp_ns, kJumpAttitudeSigma);
   }
