@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/estimation/minimal_solvers.h"
 #include "multicam_egomotion/geometry/so3.h"
-#include "multicam_egomotion/solvers/four_point_axis.h"
-#include "multicam_egomotion/solvers/four_point_vertical.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -18,22 +17,6 @@ constexpr double kLeastBaseline = 1e-3;  // stands for a motion that is not know
 // The vertical at t2 follows from the predicted rotation; when that is worse than this, from a first estimate [rad].
 constexpr double kWideRotation = 0.0175;
 constexpr double kAxisSigmas = 20.0;  // the axis is used where the angle exceeds this many sigmas of its error
-
-struct FourPointVertical {
-  static constexpr int kSampleSize = 4;
-  using Prior = VerticalPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointVertical(sample, prior, {true});
-  }
-};
-
-struct FourPointAxis {
-  static constexpr int kSampleSize = 4;
-  using Prior = AxisPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointAxis(sample, prior, {true});
-  }
-};
 
 // Translation of a single camera pair whose rotation is known: its four-point samples are degenerate (central). The
 // baseline lies in the epipolar planes of both correspondences; its length cannot be seen and is given.

@@ -11,10 +11,9 @@
 
 #include "../unit/bundle_scene.h"
 #include "../unit/correspondence_scene.h"
+#include "multicam_egomotion/estimation/minimal_solvers.h"
 #include "multicam_egomotion/estimation/robust_estimator.h"
 #include "multicam_egomotion/odometry/window.h"
-#include "multicam_egomotion/solvers/four_point_axis.h"
-#include "multicam_egomotion/solvers/four_point_vertical.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -23,21 +22,8 @@ const Eigen::Vector3d kRotation(0.01, -0.02, 0.06);
 const Eigen::Vector3d kTranslation(-0.5, 0.1, 0.04);
 constexpr int kPoints = 200;  // seen by two cameras each: 400 correspondences
 
-struct Vertical {
-  static constexpr int kSampleSize = 4;
-  using Prior = VerticalPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointVertical(sample, prior, {true});
-  }
-};
-
-struct Axis {
-  static constexpr int kSampleSize = 4;
-  using Prior = AxisPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointAxis(sample, prior, {true});
-  }
-};
+using Vertical = FourPointVertical;
+using Axis = FourPointAxis;
 
 CorrespondenceScene stereoScene(double outliers, unsigned seed) {
   return makeCorrespondenceScene(stereoShape(), kRotation, kTranslation, kPoints, 0.4, outliers, seed);

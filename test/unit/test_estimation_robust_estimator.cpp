@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "correspondence_scene.h"
+#include "multicam_egomotion/estimation/minimal_solvers.h"
 #include "multicam_egomotion/estimation/robust_estimator.h"
-#include "multicam_egomotion/solvers/four_point_axis.h"
-#include "multicam_egomotion/solvers/four_point_vertical.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -18,21 +17,8 @@ namespace {
 const Eigen::Vector3d kRotation(0.01, -0.02, 0.06);
 const Eigen::Vector3d kTranslation(-0.5, 0.1, 0.04);
 
-struct Vertical {
-  static constexpr int kSampleSize = 4;
-  using Prior = VerticalPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointVertical(sample, prior, {true});
-  }
-};
-
-struct Axis {
-  static constexpr int kSampleSize = 4;
-  using Prior = AxisPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointAxis(sample, prior, {true});
-  }
-};
+using Vertical = FourPointVertical;
+using Axis = FourPointAxis;
 
 VerticalPrior verticalOf(const CorrespondenceScene& scene, const Eigen::Vector3d& tilt_error) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
