@@ -53,9 +53,9 @@ add_style_check(clang_format check_format.sh)
 add_style_check(catkin_lint check_catkin_lint.sh)
 add_style_check(layers check_layers.py)
 
-# Tests of geometry and solvers need Eigen only; the others may use the whole core and the simulator.
+# Tests of geometry, solvers and estimation need Eigen only; the others may use the whole core and the simulator.
 file(GLOB solver_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_solver_*.cpp
-  ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_geometry_*.cpp)
+  ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_estimation_*.cpp)
 file(GLOB unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_*.cpp)
 list(REMOVE_ITEM unit_tests ${solver_tests})
 foreach(file ${solver_tests})
