@@ -13,8 +13,11 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kPixelSigmaGain = 0.1;        // share of a frame's measured image noise in the running estimate
-constexpr double kPatchShare = 0.5;            // of a patch's own error, in the motion between two frames
+constexpr double kPixelSigmaGain = 0.1;  // share of a frame's measured image noise in the running estimate
+// Share of a patch's own error that stays from frame to frame where nothing moves, and the parallax that changes it
+// [px].
+constexpr double kKeptPatchError = 0.5;
+constexpr double kPatchChangePx = 10.0;
 constexpr double kUsualInverseDistance = 0.3;  // of points whose distance is not seen [1/m]
 constexpr int kMinLandmarks = 6;  // tracks that the newest frame shares with older ones, below which it fails
 
@@ -237,7 +240,7 @@ void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& s
 
   const int newest = static_cast<int>(bundle.poses.size()) - 1;
   const double w2 = std::pow(options_.bundle.robust_width * measured_sigma, 2);
-  double weights = 0.0, squares = 0.0;
+  double weights = 0.0, squares = 0.0, kept = 0.0;
   for (const BundleLandmark& landmark : bundle.landmarks) {
     for (const BundleObservation& now : landmark.observations) {
       if (now.pose != newest) continue;
@@ -255,14 +258,16 @@ void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& s
         const double weight = 1.0 / (1.0 + square / w2);
         weights += weight;
         squares += weight * square;
+        kept += weight * std::exp(-std::pow(along.norm() * landmark.inverse_distance / kPatchChangePx, 2));
       }
     }
   }
   if (weights < 10.0) return;
-  // Half of what stays with the patches still shows: their shapes change from frame to frame.
+  // Part of what stays with the patches still shows: their shapes change, the more the more the view does.
   const double white = squares / weights;
   const double total = std::max(measured_sigma * measured_sigma, white);
-  const double share = std::clamp((white + kPatchShare * (total - white)) / (pixel_sigma_ * pixel_sigma_), 1e-4, 1.0);
+  const double patch_share = 1.0 - kKeptPatchError * kept / weights;
+  const double share = std::clamp((white + patch_share * (total - white)) / (pixel_sigma_ * pixel_sigma_), 1e-4, 1.0);
   white_share_ += gain * (share - white_share_);
 }
 

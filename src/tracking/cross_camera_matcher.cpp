@@ -16,8 +16,10 @@ constexpr int kMaxCandidates = 3;
 // Two candidates closer than this in the second image are the same match.
 constexpr double kSameMatchPx = 3.0;
 
-// The warp at a coarser pyramid level; the linear part is the same at all.
-PatchWarp atLevel(const PatchWarp& warp, int level) { return {warp.pixel / (1 << level), warp.linear}; }
+// The warp at a coarser pyramid level.
+PatchWarp atLevel(const PatchWarp& warp, int level) {
+  return {warp.pixel / (1 << level), warp.linear, warp.curvature * (1 << level)};
+}
 
 }  // namespace
 
@@ -35,6 +37,39 @@ bool CrossCameraMatcher::warpAt(const Pair& pair, const ImagePoint& point, doubl
   return area > 0.1 && area < 10.0;
 }
 
+// Second order of the map from the second image, about `pixel`, into the first for a plane that faces the first camera.
+// Where the images are curved differently, as at the edge of a fisheye, a patch cut by the linear part alone is matched
+// some hundredths of a pixel aside.
+Eigen::Matrix<double, 2, 3> CrossCameraMatcher::inverseCurvature(const Pair& pair, const ImagePoint& point,
+                                                                 double inverse_distance,
+                                                                 const Eigen::Vector2d& pixel) const {
+  const CameraModel& from = rig_.camera(pair.from).model;
+  const CameraModel& to = rig_.camera(pair.to).model;
+  const Eigen::Matrix3d R_from_to = pair.T_to_from.linear().transpose();
+  const Eigen::Vector3d shift = inverse_distance * (R_from_to * pair.T_to_from.translation());
+  const double plane = 1.0 + point.bearing.dot(shift);
+  bool seen = true;
+  const auto map = [&](double x, double y) {
+    Eigen::Vector3d bearing;
+    Eigen::Vector2d mapped = Eigen::Vector2d::Zero();
+    if (!to.unproject(pixel + Eigen::Vector2d(x, y), &bearing)) {
+      seen = false;
+      return mapped;
+    }
+    const Eigen::Vector3d direction = R_from_to * bearing;
+    const double depth = plane / point.bearing.dot(direction);
+    seen = seen && depth > 0.0 && from.project(depth * direction - shift, &mapped);
+    return mapped;
+  };
+  const double h = 0.35 * options_.patch_size_px;
+  const Eigen::Vector2d twice_centre = 2.0 * map(0, 0);
+  Eigen::Matrix<double, 2, 3> curvature;
+  curvature.col(0) = map(h, 0) + map(-h, 0) - twice_centre;
+  curvature.col(2) = map(0, h) + map(0, -h) - twice_centre;
+  curvature.col(1) = map(h, h) + map(-h, -h) - twice_centre - curvature.col(0) - curvature.col(2);
+  return seen ? Eigen::Matrix<double, 2, 3>(curvature / (2.0 * h * h)) : Eigen::Matrix<double, 2, 3>::Zero();
+}
+
 bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level,
                                 CrossCameraMatch* match, double* correlation) const {
   PatchWarp warp;
@@ -42,12 +77,13 @@ bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, doubl
   PatchAlignmentOptions alignment;
   alignment.min_correlation = options_.min_correlation;
   PatchTemplate patch;
-  const Eigen::Matrix2d to_first = warp.linear.inverse();
+  const PatchWarp to_first{point.pixel, warp.linear.inverse(),
+                           inverseCurvature(pair, point, inverse_distance, warp.pixel)};
   for (int level = first_level; level >= 0; --level) {
     // The template is cut through the inverse warp, so that the second image is sampled upright, which is cheap.
     // Coarse levels only bring the guess nearer; near the border or without texture there the finest alone decides.
-    const PatchWarp from = atLevel({point.pixel, to_first}, level);
-    PatchWarp to = atLevel({warp.pixel, Eigen::Matrix2d::Identity()}, level);
+    const PatchWarp from = atLevel(to_first, level);
+    PatchWarp to{warp.pixel / (1 << level)};
     if (!patch.cut(pair.from_image[level], from, options_.patch_size_px, WarpModel::kTranslation) ||
         !patch.align(pair.to_image[level], alignment, &to, correlation)) {
       if (level == 0) return false;

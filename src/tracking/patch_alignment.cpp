@@ -25,17 +25,17 @@ constexpr double kMinCurvature = 4.0;
 // Bilinear samples of a size x size grid through the warp, row by row. False when one lies outside the image.
 bool sample(const cv::Mat& image, const PatchWarp& warp, int size, float* __restrict values) {
   const double radius = 0.5 * (size - 1);
-  const double reach_x = radius * (std::abs(warp.linear(0, 0)) + std::abs(warp.linear(0, 1)));
-  const double reach_y = radius * (std::abs(warp.linear(1, 0)) + std::abs(warp.linear(1, 1)));
+  const Eigen::Vector2d reach =
+      radius * warp.linear.cwiseAbs().rowwise().sum() + radius * radius * warp.curvature.cwiseAbs().rowwise().sum();
   // Negated so that a NaN fails too.
-  if (!(warp.pixel.x() - reach_x >= 0 && warp.pixel.y() - reach_y >= 0 && warp.pixel.x() + reach_x < image.cols - 1 &&
-        warp.pixel.y() + reach_y < image.rows - 1)) {
+  if (!(warp.pixel.x() - reach.x() >= 0 && warp.pixel.y() - reach.y() >= 0 &&
+        warp.pixel.x() + reach.x() < image.cols - 1 && warp.pixel.y() + reach.y() < image.rows - 1)) {
     return false;
   }
-  const Eigen::Vector2d first = warp.pixel - warp.linear * Eigen::Vector2d::Constant(radius);
   const auto* data = image.ptr<std::uint8_t>();
   const auto step = static_cast<std::ptrdiff_t>(image.step);
-  if (warp.linear.isIdentity(1e-12)) {
+  if (warp.linear.isIdentity(1e-12) && warp.curvature.isZero(0.0)) {
+    const Eigen::Vector2d first = warp.pixel - Eigen::Vector2d::Constant(radius);
     const int x0 = static_cast<int>(first.x());
     const int y0 = static_cast<int>(first.y());
     const float ax = static_cast<float>(first.x() - x0);
@@ -51,14 +51,20 @@ bool sample(const cv::Mat& image, const PatchWarp& warp, int size, float* __rest
     }
     return true;
   }
-  const float dx = static_cast<float>(warp.linear(0, 0));
-  const float dy = static_cast<float>(warp.linear(1, 0));
-  for (int y = 0; y < size; ++y) {
-    const float u0 = static_cast<float>(first.x() + warp.linear(0, 1) * y);
-    const float v0 = static_cast<float>(first.y() + warp.linear(1, 1) * y);
+  const float cu = static_cast<float>(warp.curvature(0, 0));
+  const float cv = static_cast<float>(warp.curvature(1, 0));
+  for (int row = 0; row < size; ++row) {
+    // A row of the patch in powers of its column.
+    const double y = row - radius;
+    const Eigen::Vector2d slope = warp.linear.col(0) + y * warp.curvature.col(1);
+    const Eigen::Vector2d middle = warp.pixel + y * warp.linear.col(1) + y * y * warp.curvature.col(2);
+    const Eigen::Vector2d start = middle - radius * slope + radius * radius * warp.curvature.col(0);
+    const Eigen::Vector2d first_slope = slope - 2.0 * radius * warp.curvature.col(0);
+    const float u0 = static_cast<float>(start.x()), v0 = static_cast<float>(start.y());
+    const float du = static_cast<float>(first_slope.x()), dv = static_cast<float>(first_slope.y());
     for (int x = 0; x < size; ++x) {
-      const float u = u0 + dx * x;
-      const float v = v0 + dy * x;
+      const float u = u0 + (du + cu * x) * x;
+      const float v = v0 + (dv + cv * x) * x;
       // Rounding may carry the outermost sample just below zero.
       const int iu = std::max(0, static_cast<int>(u));
       const int iv = std::max(0, static_cast<int>(v));

@@ -52,7 +52,7 @@ struct PosePrior {
 
 struct BundleOptions {
   bool fix_landmarks = false;  ///< estimate the poses against the landmarks as they are
-  int max_iterations = 6;
+  int max_iterations = 30;
   double relative_decrease = 1e-4;  ///< stop when the cost falls by less than this share
   /// Points are not much nearer than this: sigma of a prior on the inverse distance about 0 [1/m]. It keeps points that
   /// are seen without parallax from taking any distance, and says next to nothing of the scale.

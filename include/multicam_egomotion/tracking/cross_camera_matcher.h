@@ -32,7 +32,7 @@ struct CrossCameraMatch {
 };
 
 /// Finds features of one camera in the image of another that looks at the same scene at the same time. Patches are
-/// warped by the local affine map between the two images, so the cameras may be turned or of different models.
+/// warped by the local map between the two images, so the cameras may be turned or of different models.
 class CrossCameraMatcher {
  public:
   CrossCameraMatcher(const CameraRig& rig, const CrossCameraOptions& options);
@@ -59,6 +59,8 @@ class CrossCameraMatcher {
   };
 
   bool warpAt(const Pair& pair, const ImagePoint& point, double inverse_distance, PatchWarp* warp) const;
+  Eigen::Matrix<double, 2, 3> inverseCurvature(const Pair& pair, const ImagePoint& point, double inverse_distance,
+                                               const Eigen::Vector2d& pixel) const;
   bool refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level,
               CrossCameraMatch* match, double* correlation) const;
   bool reverses(const Pair& pair, const ImagePoint& point, const CrossCameraMatch& match) const;

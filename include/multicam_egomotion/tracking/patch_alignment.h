@@ -7,10 +7,12 @@
 
 namespace multicam_egomotion {
 
-/// Warp of a patch: patch coordinates x (pixels about its centre) lie at pixel + linear * x in the image.
+/// Warp of a patch: patch coordinates (x, y) (pixels about its centre) lie at
+/// pixel + linear * (x, y) + curvature * (x^2, x y, y^2) in the image.
 struct PatchWarp {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
+  Eigen::Matrix<double, 2, 3> curvature = Eigen::Matrix<double, 2, 3>::Zero();  ///< [1/px]
 };
 
 /// Which part of the warp align() estimates.
@@ -18,7 +20,7 @@ enum class WarpModel { kTranslation, kAffine };
 
 struct PatchAlignmentOptions {
   int max_iterations = 10;
-  double epsilon_px = 0.01;      ///< stops when an iteration moves the patch less
+  double epsilon_px = 0.003;      ///< stops when an iteration moves the patch less
   double max_shift_px = 3.0;     ///< from the initial guess; further away is a failure
   double min_correlation = 0.8;  ///< zero-mean normalized cross-correlation at the result
 };
