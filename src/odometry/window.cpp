@@ -268,7 +268,7 @@ void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& s
   const double total = std::max(measured_sigma * measured_sigma, white);
   const double patch_share = 1.0 - kKeptPatchError * kept / weights;
   const double share = std::clamp((white + patch_share * (total - white)) / (pixel_sigma_ * pixel_sigma_), 1e-4, 1.0);
-  white_share_ += gain * (share - white_share_);
+  white_share_ = share;
 }
 
 // Splits the tracks of the newest frame by their errors there, and forgets what disagrees.
