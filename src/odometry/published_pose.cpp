@@ -11,7 +11,7 @@ namespace multicam_egomotion {
 namespace {
 constexpr double kOffsetDecay = 0.5;  // time constant [s], contract 6
 constexpr double kTiltDecay = 2.0;    // [s]
-constexpr double kIgnoredSigmas = 0.5;
+constexpr double kIgnoredSigmas = 1.0;
 }  // namespace
 
 void PublishedPose::follow(const Eigen::Isometry3d& T_window_previous, const Eigen::Isometry3d& T_window_body,
