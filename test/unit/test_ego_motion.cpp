@@ -28,24 +28,30 @@ Scenario halved(Scenario scenario) {
   return scenario;
 }
 
-// The start of handheld_stereo, rendered as far as needed.
+// Renders as far as asked for and keeps the images; `simulator` must outlive it.
+Recording recordingOf(const Simulator& simulator) {
+  Recording recording;
+  recording.frames = simulator.frames();
+  recording.imu = simulator.imuSamples();
+  auto rendered = std::make_shared<std::vector<FrameSet>>();
+  recording.images = [rendered, &simulator](int frame) {
+    while (static_cast<int>(rendered->size()) <= frame) {
+      rendered->push_back(simulator.renderFrame(static_cast<int>(rendered->size())));
+    }
+    return (*rendered)[frame].images;
+  };
+  recording.stamp = [&simulator](int frame) { return simulator.frameStamp(frame); };
+  return recording;
+}
+
+// The start of handheld_stereo.
 class EgoMotionTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     SimulationOptions options;
     options.duration_s = 0.05 * (kFrames - 1);
     simulator_ = new Simulator(halved(makeScenario("handheld_stereo", options)));
-    recording_ = new Recording();
-    recording_->frames = kFrames;
-    recording_->imu = simulator_->imuSamples();
-    auto rendered = std::make_shared<std::vector<FrameSet>>();
-    recording_->images = [rendered](int frame) {
-      while (static_cast<int>(rendered->size()) <= frame) {
-        rendered->push_back(simulator_->renderFrame(static_cast<int>(rendered->size())));
-      }
-      return (*rendered)[frame].images;
-    };
-    recording_->stamp = [](int frame) { return simulator_->frameStamp(frame); };
+    recording_ = new Recording(recordingOf(*simulator_));
   }
   static void TearDownTestSuite() {
     delete recording_;
@@ -326,6 +332,28 @@ TEST_F(EgoMotionTest, AClockThatJumpsBackResetsOrGoesOn) {
       EXPECT_GT(first->T_odom_body.covariance(0, 0), 0.99);
     }
   }
+}
+
+// Cameras without overlap, standing and then driving straight ahead: the images tell nothing of the scale, and what
+// noise told of it while standing must not outlive the first motion.
+TEST(EgoMotionFromRest, TakesTheScaleFromTheImu) {
+  SimulationOptions options;
+  options.duration_s = 2.4;
+  const Simulator simulator(halved(makeScenario("car_surround", options)));
+  const Recording recording = recordingOf(simulator);
+  EgoMotion odometry(simulator.scenario().rig, simulator.scenario().imu, EgoMotionOptions());
+  RecordingPlayer player(recording);
+  int moving = 0;
+  for (const EgoMotionResult& one : player.play(&odometry, 0, recording.frames)) {
+    if (!one.has_relative_pose) continue;
+    const Eigen::Isometry3d T =
+        simulator.stateAt(one.previous_stamp_ns).T_world_body.inverse() * simulator.stateAt(one.stamp_ns).T_world_body;
+    const double distance = T.translation().norm();
+    if (distance < 0.05) continue;
+    ++moving;
+    EXPECT_NEAR(one.T_previous_body.pose.translation().norm() / distance, 1.0, 0.2) << distance;
+  }
+  EXPECT_GT(moving, 4);
 }
 
 TEST_F(EgoMotionTest, PredictsToTheNewestImuSample) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "multicam_egomotion/tracking/feature_tracker.h"
+#include "simulator/simulator.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -216,6 +217,33 @@ TEST(FeatureTracker, MatchesTurnedFisheyeNeighbours) {
   EXPECT_GT(errors.size(), 50u);
   EXPECT_LT(quantile(errors, 0.5), 0.2);
   EXPECT_LT(quantile(errors, 0.95), 1.0);
+}
+
+// A systematic error along the epipolar line would be one of scale.
+TEST(FeatureTracker, MatchesBetweenFisheyesAreUnbiased) {
+  const Simulator simulator(makeScenario("drone_fisheye"));
+  const CameraRig& rig = simulator.scenario().rig;
+  std::vector<double> along;
+  for (const int frame : {40, 80, 120, 160}) {
+    const Eigen::Isometry3d T_world_body = simulator.stateAtFrame(frame).T_world_body;
+    FeatureTracker tracker(rig, FeatureTrackerOptions());
+    const TrackedFrame tracked =
+        tracker.track(simulator.renderFrame(frame), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+    for (std::size_t i = 1; i < tracked.observations.size(); ++i) {
+      const FeatureObservation& first = tracked.observations[i - 1];
+      const FeatureObservation& second = tracked.observations[i];
+      if (first.track != second.track) continue;
+      const Eigen::Isometry3d T = rig.camera(second.camera).T_body_cam.inverse() * rig.camera(first.camera).T_body_cam;
+      const CameraModel& model = rig.camera(second.camera).model;
+      const double distance = simulator.distance(first.camera, T_world_body, first.pixel);
+      Eigen::Vector2d expected, far;
+      if (!model.project(T * (distance * first.bearing), &expected) || !model.project(T.linear() * first.bearing, &far))
+        continue;
+      if ((expected - far).norm() > 1.0) along.push_back((expected - far).normalized().dot(second.pixel - expected));
+    }
+  }
+  EXPECT_GT(along.size(), 100u);
+  EXPECT_LT(std::abs(quantile(along, 0.5)), 0.02);
 }
 
 TEST(FeatureTracker, FeaturesLiveOnInTheNeighbourCamera) {

@@ -139,10 +139,10 @@ TEST(TiltCorrection, IsLimitedInRateAndEndsUpright) {
   EXPECT_LT(logSO3(tiltCorrection(R, R.transpose() * Eigen::Vector3d::UnitZ(), 0.0)).norm(), 1e-9);
 }
 
-TEST(TiltCorrection, LeavesWhatIsWithinHalfASigma) {
+TEST(TiltCorrection, LeavesWhatIsWithinASigma) {
   const Eigen::Vector3d up = expSO3({0.02, 0.0, 0.0}) * Eigen::Vector3d::UnitZ();
   EXPECT_LT(logSO3(tiltCorrection(Eigen::Matrix3d::Identity(), up, 0.05)).norm(), 1e-12);
-  EXPECT_NEAR(logSO3(tiltCorrection(Eigen::Matrix3d::Identity(), up, 0.02)).norm(), 0.01, 1e-9);
+  EXPECT_NEAR(logSO3(tiltCorrection(Eigen::Matrix3d::Identity(), up, 0.015)).norm(), 0.005, 1e-9);
 }
 
 TEST(TiltCorrection, UpsideDownIsNoNaN) {

@@ -31,7 +31,7 @@ Matrix6d propagateCovariance(const Matrix6d& covariance, const Eigen::Isometry3d
                              const Eigen::Isometry3d& T_previous_body, const Matrix6d& motion_covariance);
 
 /// Rotation in odom axes that takes the vertical `up` (body axes, known to `sigma` per axis [rad]) of a body with
-/// attitude R_odom_body towards z. The part of the error that is less than half a sigma is left alone: to follow it
+/// attitude R_odom_body towards z. The part of the error that is less than a sigma is left alone: to follow it
 /// would only be to follow noise.
 Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double sigma);
 
