@@ -6,12 +6,28 @@ if(NOT TARGET tests)
 endif()
 
 file(GLOB ros_unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_*.cpp)
+list(REMOVE_ITEM ros_unit_tests ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_fault_table.cpp)
 add_executable(test_ros_layer EXCLUDE_FROM_ALL ${ros_unit_tests} ${bag_runner_sources})
 target_include_directories(test_ros_layer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src/tools)
-target_link_libraries(test_ros_layer multicam_egomotion_ros Boost::program_options GTest::GTest GTest::Main)
+target_compile_definitions(test_ros_layer PRIVATE CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
+target_link_libraries(test_ros_layer multicam_egomotion_ros multicam_egomotion_fault_injection Boost::program_options
+  GTest::GTest GTest::Main)
 set_target_properties(test_ros_layer PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 add_test(NAME test_ros_layer COMMAND test_ros_layer WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+add_dependencies(test_ros_layer corrupt_bag)
 add_dependencies(tests test_ros_layer)
+
+# What each fault of the data does to the odometry, one row a fault.
+add_executable(test_fault_table EXCLUDE_FROM_ALL test/unit/ros/test_fault_table.cpp ${bag_runner_sources})
+target_link_libraries(test_fault_table multicam_egomotion_ros multicam_egomotion_fault_injection
+  multicam_egomotion_simulator Boost::program_options GTest::GTest GTest::Main)
+set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+foreach(recording simulated recorded)
+  add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+endforeach()
+add_dependencies(tests test_fault_table)
 
 # Executables where rostest looks for those of the package.
 foreach(name test_replay test_services)
