@@ -8,7 +8,9 @@
 #include <unordered_set>
 
 #include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/imu/gyroscope_check.h"
 #include "multicam_egomotion/imu/imu_buffer.h"
+#include "multicam_egomotion/imu/imu_monitor.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
 #include "multicam_egomotion/odometry/feature_report.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
@@ -29,6 +31,9 @@ constexpr double kJumpAttitudeSigma = 0.1745;  // contract 13: 10 deg [rad]
 constexpr double kDefaultPeriod = 0.1;         // between frame sets until it has been measured [s]
 constexpr double kSettledTilt = 0.0175;        // sigma of the vertical from which odom is settled: 1 deg [rad]
 constexpr double kMaxSettling = 2.0;           // settled after that in any case [s]
+constexpr double kFewInliers = 0.5;            // share of the tracks below which the gyroscope may be wrong
+constexpr double kManyMore = 1.5;              // times the inliers without the gyroscope, if it is
+constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -43,6 +48,8 @@ class EgoMotion::Impl {
         options_(options),
         assembler_(rig.size(), options.assembler, timeOffsets(rig)),
         tracker_(rig, options.tracker),
+        imu_monitor_(imu.rate_hz, options.inertial.gravity),
+        R_body_imu_(imu.T_body_imu.linear()),
         window_(options.window) {
     validate(options);
     options_.inertial.initial_velocity_sigma = options.initial_velocity_sigma;
@@ -58,6 +65,7 @@ class EgoMotion::Impl {
 
   void addImu(const ImuSample& sample) {
     if (!options_.use_imu) return;
+    imu_monitor_.add(sample);
     if (!imu_buffer_.empty() && sample.stamp_ns > 0 &&
         seconds(imu_buffer_.latestStamp() - sample.stamp_ns) > kJumpBack) {
       imu_buffer_.clear();
@@ -120,8 +128,17 @@ class EgoMotion::Impl {
     return counters;
   }
 
+  std::vector<std::string> faults() const {
+    std::vector<std::string> all = imu_monitor_.faults();
+    if (gyroscope_check_.state() == GyroscopeCheck::State::kDisagrees) {
+      all.push_back("gyroscope " + gyroscope_check_.report());
+    }
+    return all;
+  }
+
   CameraRig rig_;
   EgoMotionOptions options_;
+  GyroscopeCheck gyroscope_check_;
   FeatureTracker& tracker() { return tracker_; }
   std::function<void(const char*)> observer_;
 
@@ -195,6 +212,7 @@ class EgoMotion::Impl {
       if (!estimate(newest, motion, &result)) bridge(newest, motion, &result);
     }
     motion_->markFrame();
+    inertial_last_ns_ = stamp_ns;
     last_stamp_ns_ = set.stamp_ns;
     last_output_ns_ = set.stamp_ns;
     fillState(*motion_, &result);
@@ -229,10 +247,40 @@ class EgoMotion::Impl {
     tracker_.markKeyframe();
   }
 
+  // What most tracks agree on. Where few do with the rotation of the gyroscope and many more without it, the gyroscope
+  // is wrong: `motion` then takes the rotation of the images.
+  FrameConsensus agreement(const PosedFrame& newest, MotionSummary* motion) const {
+    const auto find = [&](const MotionSummary& prior) {
+      return findConsensus(previous_, newest, prior, motion_->upAtFrame(), options_.solver, options_.ransac,
+                           options_.seed + counters_.frame_sets);
+    };
+    const FrameConsensus consensus = find(*motion);
+    if (!inertial_ || consensus.inliers >= kFewInliers * consensus.correspondences) return consensus;
+    MotionSummary doubted = *motion;
+    doubted.rotation_covariance += kDoubtedRotation * kDoubtedRotation * Eigen::Matrix3d::Identity();
+    const FrameConsensus alone = find(doubted);
+    if (!alone.success || alone.inliers < kManyMore * consensus.inliers) return consensus;
+    doubted.T_a_b.linear() = alone.T_previous_body.linear();
+    *motion = doubted;
+    return alone;
+  }
+
+  // The check needs the IMU on both sides of the frames and so lags behind.
+  void compareWithGyroscope(const Eigen::Matrix3d& R_previous_body) {
+    if (!inertial_) return;
+    unchecked_.push_back({inertial_last_ns_, motion_->stamp(), R_body_imu_.transpose() * logSO3(R_previous_body)});
+    while (!unchecked_.empty() &&
+           unchecked_.front().stamp2_ns + nanoseconds(GyroscopeCheck::kLargestOffset) <= imu_buffer_.latestStamp()) {
+      const SeenRotation& seen = unchecked_.front();
+      gyroscope_check_.add(seen.stamp1_ns, seen.stamp2_ns, seen.rotation, imu_buffer_);
+      unchecked_.pop_front();
+    }
+  }
+
   bool estimate(const PosedFrame& newest, const MotionSummary& predicted, EgoMotionResult* result) {
     if (window_.empty()) return false;
-    const FrameConsensus consensus = findConsensus(previous_, newest, predicted, motion_->upAtFrame(), options_.solver,
-                                                   options_.ransac, options_.seed + counters_.frame_sets);
+    MotionSummary motion = predicted;
+    const FrameConsensus consensus = agreement(newest, &motion);
     stage("ransac");
     result->solver = consensus.solver;
     result->tracks = consensus.correspondences;
@@ -241,7 +289,6 @@ class EgoMotion::Impl {
     if (!consensus.success) return false;
     tracker_.remove(consensus.outliers);
 
-    MotionSummary motion = predicted;
     motion.use_translation = !scale_seen_;
     Eigen::Isometry3d along = consensus.T_previous_body;
     const double speed_sigma = std::sqrt(motion.translation_covariance.trace() / 3.0);
@@ -261,6 +308,7 @@ class EgoMotion::Impl {
     inlier_tracks_.clear();
     inlier_tracks_.insert(estimate.inliers.begin(), estimate.inliers.end());
 
+    compareWithGyroscope(estimate.vision.T_a_b.linear());
     learn(estimate, predicted.T_a_b.translation(), consensus.parallax_px);
     if (estimate.scale_state != ScaleState::kNotApplicable) {
       scale_seen_ = estimate.scale_state == ScaleState::kObservable;
@@ -423,6 +471,7 @@ class EgoMotion::Impl {
     motion_->reset(forget_biases);
     previous_ = PosedFrame();
     inlier_tracks_.clear();
+    unchecked_.clear();
     last_stamp_ns_ = last_output_ns_ = last_vision_ns_ = 0;
     now_ns_ = 0;
     scale_seen_ = false;
@@ -432,11 +481,21 @@ class EgoMotion::Impl {
   FrameAssembler assembler_;
   FeatureTracker tracker_;
   ImuBuffer imu_buffer_;
+  ImuMonitor imu_monitor_;
+  Eigen::Matrix3d R_body_imu_;
   std::unique_ptr<MotionModel> motion_;
   InertialMotion* inertial_ = nullptr;  ///< motion_ when it is inertial
   Window window_;
   PublishedPose published_;
   Matrix6d covariance_ = Matrix6d::Zero();  ///< of the published pose, odom axes
+
+  // Rotation between two frames by the images alone, in the axes of the IMU; stamps of its clock.
+  struct SeenRotation {
+    std::int64_t stamp1_ns, stamp2_ns;
+    Eigen::Vector3d rotation;
+  };
+  std::deque<SeenRotation> unchecked_;  ///< not yet compared with the gyroscope
+  std::int64_t inertial_last_ns_ = 0;   ///< last_stamp_ns_ on the clock of the IMU
 
   std::deque<FrameSet> pending_;  ///< complete, waiting for the IMU
   PosedFrame previous_;
@@ -467,5 +526,7 @@ void EgoMotion::setMask(int camera, const cv::Mat& mask) { impl_->tracker().setM
 const CameraRig& EgoMotion::rig() const { return impl_->rig_; }
 const EgoMotionOptions& EgoMotion::options() const { return impl_->options_; }
 EgoMotionCounters EgoMotion::counters() const { return impl_->counters(); }
+std::vector<std::string> EgoMotion::faults() const { return impl_->faults(); }
+std::string EgoMotion::gyroscopeCheck() const { return impl_->gyroscope_check_.report(); }
 
 }  // namespace multicam_egomotion

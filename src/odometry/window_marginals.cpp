@@ -19,6 +19,8 @@ constexpr double kWeakestInformation =
 
 // Calibration and tracking leave errors that do not average out over a window; scale is not seen through less [px].
 constexpr double kSystematicError = 0.25;
+// Scale error that all matches between cameras have in common, as a share: patches on slanted surfaces and at edges.
+constexpr double kCommonScaleError = 5e-4;
 constexpr double kEvenlySeen = 5.0;  // ratio of the noise along and across up to which all directions count as seen
 constexpr double kUnknownInverseDistance = 100.0;  // sigma that says nothing of a point's distance [1/m]
 
@@ -95,6 +97,9 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   vision_b /= white_share;
   estimate->relative.T_a_b = relativePose(previous, newest);
   estimate->relative.covariance = J * solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance * J.transpose();
+
+  const Eigen::Vector3d common = kCommonScaleError * estimate->relative.T_a_b.translation();
+  estimate->relative.covariance.topLeftCorner<3, 3>() += common * common.transpose();
 
   // From the images alone.
   LastTwo vision = solveLastTwo(vision_H, vision_b, 6);

@@ -35,6 +35,7 @@ void summarize(const Health& health, diagnostic_updater::DiagnosticStatusWrapper
   if (!health.silent_topics.empty()) {
     status.mergeSummary(DiagnosticStatus::WARN, "no data on " + joined(health.silent_topics));
   }
+  for (const std::string& fault : health.faults) status.mergeSummary(DiagnosticStatus::WARN, fault);
   if (health.changed_camera_infos > 0) {
     status.mergeSummary(DiagnosticStatus::WARN, "CameraInfo changed after the start and is ignored");
   }
@@ -59,6 +60,7 @@ void describe(const Health& health, diagnostic_updater::DiagnosticStatusWrapper&
     status.add("IMU state", !health.use_imu                                   ? "not used"
                             : result.status == EgoMotionStatus::kInitializing ? "initializing"
                                                                               : "running");
+    if (health.use_imu) status.add("gyroscope", health.gyroscope_check);
     status.addf("tilt sigma [rad]", "%.4f", result.tilt_sigma);
     status.addf("gyroscope bias [rad/s]", "%.5f %.5f %.5f", result.gyroscope_bias.x(), result.gyroscope_bias.y(),
                 result.gyroscope_bias.z());

@@ -118,12 +118,20 @@ void EgoMotionRos::report() {
   health.dropped_images = queue_->droppedImages();
   health.dropped_imu = queue_->droppedImu();
   if (acquisition_ != nullptr) health.changed_camera_infos = acquisition_->changes();
-  if (odometry_ != nullptr) health.counters = odometry_->counters();
+  if (odometry_ != nullptr) {
+    health.counters = odometry_->counters();
+    health.faults = odometry_->faults();
+    health.gyroscope_check = odometry_->gyroscopeCheck();
+  }
   diagnostics_->publish();
 
   const auto now = TopicWatch::Clock::now();
   if (now - warned_ < kWarningPeriod || health.state == Health::State::kConfigError) return;
   std::string missing = health.state == Health::State::kWaiting ? health.message : "";
+  for (const std::string& fault : health.faults) {
+    ROS_WARN("%s: %s", private_node_.getNamespace().c_str(), fault.c_str());
+    warned_ = now;
+  }
   for (const std::string& topic : health.silent_topics) missing += (missing.empty() ? "" : ", ") + topic;
   if (missing.empty()) return;
   ROS_WARN("%s: waiting for %s", private_node_.getNamespace().c_str(), missing.c_str());

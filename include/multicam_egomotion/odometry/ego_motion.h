@@ -66,6 +66,10 @@ class EgoMotion {
   const CameraRig& rig() const;
   const EgoMotionOptions& options() const;
   EgoMotionCounters counters() const;
+  /// What is wrong with the data now, one line each that says what was found and what was expected.
+  std::vector<std::string> faults() const;
+  /// Whether the gyroscope agrees with the images, or that this cannot be told yet.
+  std::string gyroscopeCheck() const;
 
  private:
   class Impl;

@@ -19,6 +19,8 @@ struct Health {
   State state = State::kWaiting;
   std::string message;                     ///< what is waited for, or what is wrong
   std::vector<std::string> silent_topics;  ///< inputs without a message for two seconds
+  std::vector<std::string> faults;         ///< of the data, as the odometry names them
+  std::string gyroscope_check;             ///< whether it agrees with the images
   std::optional<EgoMotionResult> result;   ///< the newest, without features and points
   bool use_imu = true;
   EgoMotionCounters counters;

@@ -40,6 +40,8 @@ inline FaultRun runBag(const std::string& path, const Parameters& parameters) {
     health.rate_hz = 1.0;
     const auto observe = [&] {
       health.counters = replay.odometry().counters();
+      health.faults = replay.odometry().faults();
+      health.gyroscope_check = replay.odometry().gyroscopeCheck();
       health.undecodable_images = report.undecodable_images;
       diagnostic_updater::DiagnosticStatusWrapper status;
       describe(health, status);
