@@ -18,8 +18,8 @@ packages=(
 )
 if [[ -d /opt/ros/noetic ]]; then
   for name in catkin cv-bridge diagnostic-updater geometry-msgs image-transport message-generation message-runtime \
-    nav-msgs nodelet pluginlib rosbag rosbash roscpp roslaunch rosnode rosparam rospy rosservice rostest rviz sensor-msgs \
-    std-msgs std-srvs tf2 tf2-eigen tf2-msgs tf2-ros; do
+    nav-msgs nodelet pluginlib rosbag rosbash roscpp roslaunch rosnode rosparam rospy rosservice rostest rviz \
+    sensor-msgs std-msgs std-srvs tf2 tf2-eigen tf2-msgs tf2-ros topic-tools; do
     packages+=("ros-noetic-$name")
   done
 else
@@ -30,7 +30,7 @@ else
     python3-diagnostic-msgs python3-genpy python3-geometry-msgs python3-nav-msgs python3-rosbag python3-roslaunch
     python3-rosnode python3-rosparam python3-rospy python3-rosservice python3-rostest python3-sensor-msgs
     python3-std-srvs ros-geometry-msgs ros-message-generation ros-message-runtime ros-std-msgs rosbash rospack-tools
-    rviz
+    rviz topic-tools
   )
 fi
 

@@ -20,7 +20,9 @@ void summarize(const Health& health, diagnostic_updater::DiagnosticStatusWrapper
     status.summary(DiagnosticStatus::ERROR, "CONFIG_ERROR: " + health.message);
     return;
   }
-  if (health.state == Health::State::kWaiting) {
+  if (health.paused) {
+    status.summary(DiagnosticStatus::WARN, "PAUSED");
+  } else if (health.state == Health::State::kWaiting) {
     status.summary(DiagnosticStatus::WARN, "waiting for " + health.message);
   } else if (!health.result) {
     status.summary(DiagnosticStatus::WARN, "waiting for data");

@@ -43,6 +43,7 @@ EgoMotionRos::EgoMotionRos(ros::NodeHandle node, ros::NodeHandle private_node)
   publishers_ = std::make_unique<Publishers>(node_, frames, parameters_.node);
   diagnostics_ = std::make_unique<Diagnostics>(node_, private_node_);
   diagnostics_->health().use_imu = parameters_.odometry.use_imu;
+  paused_ = parameters_.node.start_paused;
   if (setup_) {
     start(*setup_);
   } else {
@@ -80,6 +81,8 @@ void EgoMotionRos::subscribe() {
   }
   services_.push_back(private_node_.advertiseService("reset", &EgoMotionRos::reset, this));
   services_.push_back(private_node_.advertiseService("set_pose", &EgoMotionRos::setPose, this));
+  services_.push_back(private_node_.advertiseService("pause", &EgoMotionRos::pause, this));
+  services_.push_back(private_node_.advertiseService("resume", &EgoMotionRos::resume, this));
 }
 
 void EgoMotionRos::subscribeImage(int camera, const std::string& topic) {
@@ -140,6 +143,18 @@ bool EgoMotionRos::setPose(SetPose::Request& request, SetPose::Response& respons
     response.message = serve([pose](EgoMotion& odometry) { odometry.setPose(pose); });
   }
   response.success = response.message.empty();
+  return true;
+}
+
+bool EgoMotionRos::pause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = !paused_.exchange(true);
+  if (!response.success) response.message = "was paused already";
+  return true;
+}
+
+bool EgoMotionRos::resume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = paused_.exchange(false);
+  if (!response.success) response.message = "was not paused";
   return true;
 }
 

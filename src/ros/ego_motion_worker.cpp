@@ -64,7 +64,7 @@ void EgoMotionRos::process(const Input& input) {
   if (std::holds_alternative<Request>(input)) {
     std::get<Request>(input)();
   } else if (std::holds_alternative<ImageInput>(input)) {
-    if (odometry_ != nullptr) process(std::get<ImageInput>(input));
+    if (odometry_ != nullptr && !paused_) process(std::get<ImageInput>(input));
   } else if (odometry_ != nullptr) {
     process(*std::get<sensor_msgs::ImuConstPtr>(input));
   } else {
@@ -79,7 +79,7 @@ void EgoMotionRos::process(const sensor_msgs::Imu& message) {
   const ImuSample sample = toImuSample(message);
   odometry_->addImu(sample);
   publish(odometry_->advance(clock_.advance(sample.stamp_ns)));
-  if (publishers_->wantsImuOdometry()) {
+  if (!paused_ && publishers_->wantsImuOdometry()) {
     if (const auto prediction = odometry_->predictToLatestImu()) publishers_->publishImuOdometry(*prediction);
   }
 }
@@ -102,6 +102,7 @@ void EgoMotionRos::process(const ImageInput& input) {
 }
 
 void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
+  if (paused_) return;
   for (const EgoMotionResult& result : results) {
     publishers_->publish(result, odometry_->rig(), *recent_images_);
     std::optional<double> latency_ms;
@@ -115,6 +116,7 @@ void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
 void EgoMotionRos::report() {
   Health& health = diagnostics_->health();
   health.silent_topics = watch_.silent();
+  health.paused = paused_;
   health.dropped_images = queue_->droppedImages();
   health.dropped_imu = queue_->droppedImu();
   if (acquisition_ != nullptr) health.changed_camera_infos = acquisition_->changes();

@@ -24,6 +24,7 @@ void visitParameters(Parameters& p, Visitor& v) {
   v("publish_previous_tf", n.publish_previous_tf);
   v("path_period_s", n.path_period_s, 0, 3600);
   v("path_length", n.path_length, 2, 1000000);
+  v("start_paused", n.start_paused);
   v("forget_biases", n.forget_biases);
 
   ImuCalibration& i = p.imu;

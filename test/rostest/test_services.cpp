@@ -22,9 +22,9 @@ class Services : public ::testing::Test {
   void receiveOdometry(const nav_msgs::Odometry::ConstPtr& message) { odometry_ = message; }
   void receiveMotion(const multicam_egomotion::EgoMotion::ConstPtr& message) { motion_ = message; }
 
-  /// Spins until the condition holds, at most 40 s of wall time.
-  bool waitFor(const std::function<bool()>& condition) {
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(40.0);
+  /// Spins until the condition holds, at most so long by the wall clock.
+  bool waitFor(const std::function<bool()>& condition, double seconds = 40.0) {
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(seconds);
     while (ros::ok() && ros::WallTime::now() < end) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.02));
       if (condition()) return true;
@@ -51,6 +51,16 @@ TEST_F(Services, SetPoseAndResetStartNewEpochs) {
   EXPECT_TRUE(pose.response.success) << pose.response.message;
   EXPECT_TRUE(waitFor([&] { return motion_->odom_epoch == epoch + 1; }));
   EXPECT_TRUE(waitFor([&] { return std::abs(odometry_->pose.pose.position.x - 100.0) < 2.0; }));
+
+  std_srvs::Trigger pause, resume;
+  ASSERT_TRUE(ros::service::call("egomotion/pause", pause));
+  EXPECT_TRUE(pause.response.success);
+  waitFor([] { return false; }, 0.3);  // what was under way
+  odometry_ = nullptr;
+  EXPECT_FALSE(waitFor([this] { return odometry_ != nullptr; }, 1.0));
+  ASSERT_TRUE(ros::service::call("egomotion/resume", resume));
+  EXPECT_TRUE(resume.response.success);
+  EXPECT_TRUE(waitFor([this] { return odometry_ != nullptr; }));
 
   std_srvs::Trigger reset;
   ASSERT_TRUE(ros::service::call("egomotion/reset", reset));

@@ -23,6 +23,7 @@ struct Health {
   std::string gyroscope_check;             ///< whether it agrees with the images
   std::optional<EgoMotionResult> result;   ///< the newest, without features and points
   bool use_imu = true;
+  bool paused = false;
   EgoMotionCounters counters;
   std::uint64_t dropped_images = 0;  ///< the worker was too slow
   std::uint64_t dropped_imu = 0;

@@ -39,6 +39,8 @@ class EgoMotionRos {
   void subscribeImage(int camera, const std::string& topic);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool setPose(SetPose::Request& request, SetPose::Response& response);
+  bool pause(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool resume(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   /// Runs in the worker and waits for it; the message says why nothing was done, empty on success.
   std::string serve(std::function<void(EgoMotion&)> request);
 
@@ -74,6 +76,8 @@ class EgoMotionRos {
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
   std::unique_ptr<ros::AsyncSpinner> spinner_;
+  /// Images are ignored and nothing is published; the IMU carries the state on.
+  std::atomic<bool> paused_{false};
   std::atomic<bool> running_{true}, configuration_failed_{false};
   std::thread worker_;
 };

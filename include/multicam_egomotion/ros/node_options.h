@@ -23,6 +23,7 @@ struct NodeOptions {
   bool publish_previous_tf = false;  ///< base_frame -> <base_frame>_previous, the frame of relative_pose
   double path_period_s = 0.1;        ///< at least this long between two poses of the path [s]
   int path_length = 5000;            ///< most poses in the path; the oldest leave first
+  bool start_paused = false;         ///< wait for ~resume
   bool forget_biases = false;        ///< ~reset also forgets the IMU's biases
 };
 
