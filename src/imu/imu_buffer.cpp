@@ -9,6 +9,8 @@
 namespace multicam_egomotion {
 namespace {
 
+constexpr int kFrozenRun = 3;  // equal samples that no live sensor gives
+
 bool earlier(const ImuSample& sample, std::int64_t stamp_ns) { return sample.stamp_ns < stamp_ns; }
 
 }  // namespace
@@ -38,8 +40,13 @@ bool ImuBuffer::add(const ImuSample& sample) {
     ++faults_.zero_stamp;
     return false;
   }
-  if (!samples_.empty() && sample.stamp_ns <= samples_.back().stamp_ns) {
-    ++(sample.stamp_ns == samples_.back().stamp_ns ? faults_.duplicate : faults_.out_of_order);
+  if (!samples_.empty() && sample.stamp_ns <= latest_stamp_ns_) {
+    ++(sample.stamp_ns == latest_stamp_ns_ ? faults_.duplicate : faults_.out_of_order);
+    return false;
+  }
+  latest_stamp_ns_ = sample.stamp_ns;
+  if (frozen(sample)) {
+    ++faults_.repeated;
     return false;
   }
   if (samples_.size() == capacity_) {
@@ -49,9 +56,24 @@ bool ImuBuffer::add(const ImuSample& sample) {
   return true;
 }
 
+bool ImuBuffer::frozen(const ImuSample& sample) {
+  const bool same = !samples_.empty() && sample.angular_velocity == samples_.back().angular_velocity &&
+                    sample.linear_acceleration == samples_.back().linear_acceleration;
+  run_ = same ? run_ + 1 : 1;
+  if (run_ >= kFrozenRun && changes_ > same_again_) return true;
+  ++(same ? same_again_ : changes_);
+  return false;
+}
+
+void ImuBuffer::clear() {
+  samples_.clear();
+  latest_stamp_ns_ = 0;
+  run_ = 0;
+}
+
 bool ImuBuffer::samplesBetween(std::int64_t begin_ns, std::int64_t end_ns, std::vector<ImuSample>* samples) const {
   samples->clear();
-  if (samples_.empty() || end_ns < begin_ns || end_ns < oldestStamp() || begin_ns > latestStamp()) {
+  if (samples_.empty() || end_ns < begin_ns || end_ns < oldestStamp() || begin_ns > latestUsedStamp()) {
     return false;
   }
   auto sample = std::lower_bound(samples_.begin(), samples_.end(), begin_ns, earlier);
@@ -64,7 +86,7 @@ bool ImuBuffer::samplesBetween(std::int64_t begin_ns, std::int64_t end_ns, std::
   if (sample != samples_.end() && samples->back().stamp_ns < end_ns) {
     samples->push_back(interpolate(*(sample - 1), *sample, end_ns));
   }
-  return begin_ns >= oldestStamp() && end_ns <= latestStamp();
+  return begin_ns >= oldestStamp() && end_ns <= latestUsedStamp();
 }
 
 double ImuBuffer::largestGap(std::int64_t begin_ns, std::int64_t end_ns) const {
@@ -76,6 +98,13 @@ double ImuBuffer::largestGap(std::int64_t begin_ns, std::int64_t end_ns) const {
     previous = sample->stamp_ns;
   }
   return 1e-9 * static_cast<double>(std::max(largest, end_ns - previous));
+}
+
+double ImuBuffer::spacingBefore(std::int64_t stamp_ns) const {
+  const auto next = std::lower_bound(samples_.begin(), samples_.end(), stamp_ns, earlier);
+  if (next == samples_.begin()) return 0.0;
+  const std::int64_t end_ns = next == samples_.end() ? stamp_ns : next->stamp_ns;
+  return 1e-9 * static_cast<double>(end_ns - (next - 1)->stamp_ns);
 }
 
 void ImuBuffer::prune(std::int64_t stamp_ns) {

@@ -152,24 +152,55 @@ bool InertialState::initialize(const std::vector<ImuSample>& samples) {
   correctVertical(window, accelerationSigma(window, started_still_ ? options_.still_acceleration_sigma
                                                                    : options_.motion_acceleration_sigma));
   window_ = ForceWindow();
+  held_ = false;
+  rate_seen_ns_ = velocity_seen_ns_ = 0;
+  doubted_rate_density_ = 0.0;
   initialized_ = true;
   markFrame();
   return true;
 }
 
-void InertialState::propagate(const ImuSample& sample) {
+void InertialState::propagate(const ImuSample& sample) { propagate(sample, 0.0); }
+
+void InertialState::propagate(const ImuSample& sample, double spacing_s) {
   if (!initialized_ || !usable(sample) || sample.stamp_ns <= last_.stamp_ns) {
     ++ignored_samples_;
     return;
   }
-  const double duration = secondsBetween(last_, sample);
-  const double gap = duration > options_.max_sample_gap_s ? duration : 0.0;
+  // The rate and acceleration that a gap leaves unseen are constant over it: the variance of their integral, spread
+  // evenly. Their part between samples is what a straight line misses.
+  const double gap_s = std::max(spacing_s, secondsBetween(last_, sample));
+  const double share = std::min(1.0, square(gap_s / options_.max_sample_gap_s));
+  Unseen unseen;
+  unseen.rate_density = gap_s * square(share * options_.gap_rate_sigma);
+  unseen.force_density = gap_s * square(share * options_.gap_acceleration_sigma);
+  unseen.force = share == 1.0;
+  advance(sample, unseen);
+  held_ = false;
+}
+
+void InertialState::hold(std::int64_t stamp_ns, std::int64_t latest_sample_ns) {
+  const auto since = [&](std::int64_t known_ns) {  // variance grows with the square of the time
+    return 1e-9 * (static_cast<double>(std::max<std::int64_t>(0, last_.stamp_ns - known_ns)) +
+                   static_cast<double>(stamp_ns - known_ns));
+  };
+  Unseen unseen;
+  unseen.rate_density = since(std::max(latest_sample_ns, rate_seen_ns_)) * square(options_.gap_rate_sigma);
+  unseen.force_density = since(std::max(latest_sample_ns, velocity_seen_ns_)) * square(options_.gap_acceleration_sigma);
+  unseen.force = true;
+  ImuSample held = last_;
+  held.stamp_ns = stamp_ns;
+  advance(held, unseen);
+  held_ = true;
+}
+
+void InertialState::advance(const ImuSample& sample, const Unseen& unseen) {
   const ImuSample begin = last_;
-  const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(duration / kMaxStepS)));
+  const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(secondsBetween(begin, sample) / kMaxStepS)));
   for (int i = 1; i < steps; ++i) {
-    step(interpolate(begin, sample, begin.stamp_ns + (sample.stamp_ns - begin.stamp_ns) / steps * i), gap);
+    step(interpolate(begin, sample, begin.stamp_ns + (sample.stamp_ns - begin.stamp_ns) / steps * i), unseen);
   }
-  step(sample, gap);
+  step(sample, unseen);
 }
 
 bool InertialState::propagateTo(std::int64_t stamp_ns, const ImuBuffer& buffer) {
@@ -181,20 +212,19 @@ bool InertialState::propagateTo(std::int64_t stamp_ns, const ImuBuffer& buffer) 
     if (sample.stamp_ns == last_.stamp_ns) {
       if (usable(sample)) {
         last_ = sample;  // it may have been held until now
+        held_ = false;
       }
     } else {
-      propagate(sample);
+      propagate(sample, buffer.spacingBefore(sample.stamp_ns));
     }
   }
   if (last_.stamp_ns < stamp_ns) {
-    ImuSample held = last_;
-    held.stamp_ns = stamp_ns;
-    propagate(held);
+    hold(stamp_ns, buffer.latestUsedStamp());
   }
   return complete;
 }
 
-void InertialState::step(const ImuSample& sample, double gap_s) {
+void InertialState::step(const ImuSample& sample, const Unseen& unseen) {
   const double dt = secondsBetween(last_, sample);
   const Eigen::Vector3d rotation = rotationVectorBetween(last_, sample, gyroscope_bias_);
   const Eigen::Vector3d force_before = last_.linear_acceleration - accelerometer_bias_;
@@ -203,14 +233,17 @@ void InertialState::step(const ImuSample& sample, double gap_s) {
   const Eigen::Matrix3d R_middle = R_odom_imu_ * expSO3(0.5 * rotation);
   const Eigen::Matrix3d R_after = Eigen::Quaterniond(R_odom_imu_ * R_step).normalized().toRotationMatrix();
   const Eigen::Vector3d force = 0.5 * (R_odom_imu_ * force_before + R_after * force_after);
-  const Eigen::Vector3d acceleration = force - options_.gravity * Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d acceleration = force - options_.gravity * Eigen::Vector3d::UnitZ();
+  if (unseen.force) {
+    acceleration.setZero();
+  }
 
-  propagateCovariance(rotation / dt, acceleration, R_middle, dt, gap_s);
+  propagateCovariance(rotation / dt, acceleration, R_middle, dt, unseen);
   const Eigen::Matrix3d rate_to_rotation = dt * rightJacobianSO3(rotation);
-  rotation_noise_ =
-      (R_step.transpose() * rotation_noise_ * R_step + (gyroscope_variance_ + gap_s * square(options_.gap_rate_sigma)) /
-                                                           dt * rate_to_rotation * rate_to_rotation.transpose())
-          .eval();
+  const double rate_density = gyroscope_variance_ + unseen.rate_density + doubted_rate_density_;
+  rotation_noise_ = (R_step.transpose() * rotation_noise_ * R_step +
+                     rate_density / dt * rate_to_rotation * rate_to_rotation.transpose())
+                        .eval();
   rotation_bias_jacobian_ = (R_step.transpose() * rotation_bias_jacobian_ - rate_to_rotation).eval();
 
   displacement_ += R_odom_frame_.transpose() * (v_odom_ * dt + 0.5 * dt * dt * acceleration);
@@ -218,6 +251,10 @@ void InertialState::step(const ImuSample& sample, double gap_s) {
   R_odom_imu_ = R_after;
   last_ = sample;
 
+  if (unseen.force) {
+    window_ = ForceWindow();
+    return;
+  }
   window_.add(R_middle, 0.5 * (force_before + force_after), dt);
   if (window_.duration_s >= options_.gravity_window_s) {
     useGravityWindow();
@@ -225,7 +262,7 @@ void InertialState::step(const ImuSample& sample, double gap_s) {
 }
 
 void InertialState::propagateCovariance(const Eigen::Vector3d& rate, const Eigen::Vector3d& acceleration,
-                                        const Eigen::Matrix3d& R, double dt, double gap_s) {
+                                        const Eigen::Matrix3d& R, double dt, const Unseen& unseen) {
   const Eigen::Matrix3d R_T = R.transpose();
   const Eigen::Matrix3d R_frame_T = R_odom_frame_.transpose();
   const Eigen::Vector3d velocity_imu = R_T * v_odom_;
@@ -234,21 +271,22 @@ void InertialState::propagateCovariance(const Eigen::Vector3d& rate, const Eigen
   // Continuous error dynamics; δω = −δb_g − n_g, δf = −δb_a − n_a.
   Covariance F = Covariance::Zero();
   F.block<3, 3>(kTheta, kGyroscopeBias) = -R;
-  F.block<3, 3>(kVelocity, kTheta) = R_T * skew(gravity);
   F.block<3, 3>(kVelocity, kVelocity) = -skew(rate);
   F.block<3, 3>(kVelocity, kGyroscopeBias) = -skew(velocity_imu);
-  F.block<3, 3>(kVelocity, kAccelerometerBias) = -Eigen::Matrix3d::Identity();
+  if (!unseen.force) {
+    F.block<3, 3>(kVelocity, kTheta) = R_T * skew(gravity);
+    F.block<3, 3>(kVelocity, kAccelerometerBias) = -Eigen::Matrix3d::Identity();
+  }
   F.block<3, 3>(kDisplacement, kVelocity) = R_frame_T * R;
   F.block<3, 3>(kDisplacement, kTheta) = -R_frame_T * skew(v_odom_);
   F.block<3, 3>(kDisplacement, kFrameTheta) = R_frame_T * skew(v_odom_);
   const Covariance transition = Covariance::Identity() + dt * F + 0.5 * dt * dt * F * F;
 
-  // A gap's rate and acceleration are constant but unknown: the variance of their integral over it, spread evenly.
   // A scale error is constant over its correlation time: as white noise it has the same effect over longer times.
-  const double rate_density = gyroscope_variance_ + gap_s * square(options_.gap_rate_sigma) +
+  const double rate_density = gyroscope_variance_ + unseen.rate_density + doubted_rate_density_ +
                               options_.scale_error_time_s * square(options_.gyroscope_scale_sigma) * rate.squaredNorm();
   const double force_density =
-      accelerometer_variance_ + gap_s * square(options_.gap_acceleration_sigma) +
+      accelerometer_variance_ + unseen.force_density +
       options_.scale_error_time_s * square(options_.accelerometer_scale_sigma) * acceleration.squaredNorm();
   Eigen::Matrix<double, kSize, 3> rate_to_error = Eigen::Matrix<double, kSize, 3>::Zero();
   rate_to_error.middleRows<3>(kTheta) = -R;
@@ -285,6 +323,9 @@ void InertialState::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
       .setConstant(options_.initial_velocity_sigma * options_.initial_velocity_sigma);
   covariance_.block<3, 3>(kTheta, kTheta).diagonal().array() += attitude_sigma * attitude_sigma;
   window_ = ForceWindow();
+  held_ = false;
+  rate_seen_ns_ = velocity_seen_ns_ = 0;
+  doubted_rate_density_ = 0.0;
   markFrame();
 }
 

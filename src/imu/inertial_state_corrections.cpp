@@ -14,6 +14,9 @@ namespace {
 /// 99.9 % quantile of χ² for 2 and 3 degrees of freedom.
 constexpr double chiSquareGate(int degrees_of_freedom) { return degrees_of_freedom == 2 ? 13.816 : 16.266; }
 
+constexpr double kKeptDoubt = 0.7;      // of the doubt in the gyroscope, from frame to frame once it agrees
+constexpr double kIgnoredDoubt = 10.0;  // times its variance
+
 }  // namespace
 
 void InertialState::ForceWindow::add(const Eigen::Matrix3d& R, const Eigen::Vector3d& force, double dt) {
@@ -39,7 +42,28 @@ bool InertialState::correctRelativeRotation(const Eigen::Matrix3d& R_1_2, const 
   ErrorState widening = ErrorState::Zero();
   widening.segment<3>(kTheta).setConstant(residual.squaredNorm());
   widening.segment<3>(kGyroscopeBias).setConstant(options_.gyroscope_bias_sigma * options_.gyroscope_bias_sigma);
-  return correct<3>(residual, H, covariance, &rotation_counts_, widening);
+  const std::uint64_t recoveries = rotation_counts_.recoveries;
+  if (!correct<3>(residual, H, covariance, &rotation_counts_, widening)) {
+    return false;
+  }
+  doubtGyroscope(residual, rotation_counts_.recoveries > recoveries);
+  if (held_) {  // a rate seen lately is better than an old sample's
+    const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
+    last_.angular_velocity = logSO3(R_1_2) / duration + gyroscope_bias_;
+    rate_seen_ns_ = last_.stamp_ns;
+  }
+  return true;
+}
+
+void InertialState::doubtGyroscope(const Eigen::Vector3d& residual, bool recovered) {
+  const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
+  const double density = residual.squaredNorm() / (3.0 * duration);
+  if (recovered) {
+    doubted_rate_density_ = density;
+  } else if (doubted_rate_density_ > 0.0) {
+    doubted_rate_density_ = std::max(kKeptDoubt * doubted_rate_density_, density);
+    if (doubted_rate_density_ < kIgnoredDoubt * gyroscope_variance_) doubted_rate_density_ = 0.0;
+  }
 }
 
 bool InertialState::correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance) {
@@ -69,6 +93,7 @@ bool InertialState::correctMotion(const Eigen::Vector3d& residual, const Eigen::
   if (!correct<3>(residual, H, covariance, &velocity_counts_, widening)) {
     return false;
   }
+  velocity_seen_ns_ = last_.stamp_ns;
   // A velocity known this well tells more about the vertical than the mean force over the window does.
   const double velocity_variance = velocityCovarianceInImuAxes().trace() / 3;
   if (std::sqrt(velocity_variance) < options_.motion_acceleration_sigma * options_.gravity_window_s) {

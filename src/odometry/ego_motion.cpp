@@ -16,6 +16,7 @@
 #include "multicam_egomotion/odometry/frame_consensus.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 #include "multicam_egomotion/odometry/published_pose.h"
+#include "multicam_egomotion/odometry/systematic_drift.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -105,6 +106,7 @@ class EgoMotion::Impl {
     restart_pose_.reset();
     if (T_odom_body) restart_pose_ = *T_odom_body;
     forgetMotion(forget_biases);
+    drift_ = SystematicDrift();
     ++odom_epoch_;
   }
 
@@ -215,6 +217,7 @@ class EgoMotion::Impl {
     inertial_last_ns_ = stamp_ns;
     last_stamp_ns_ = set.stamp_ns;
     last_output_ns_ = set.stamp_ns;
+    drift_.follow(published_.pose().translation(), tiltVariance());
     fillState(*motion_, &result);
     result.features = reportFeatures(previous_.frame, newest.frame, inlier_tracks_);
     previous_ = std::move(newest);
@@ -367,6 +370,15 @@ class EgoMotion::Impl {
     window_.rotateAbout(window_position, turn);
   }
 
+  // Of the published attitude, per axis: what is known of the vertical and how far the attitude is from it. Without an
+  // IMU the first attitude says what is up.
+  double tiltVariance() const {
+    if (!options_.use_imu) return 0.0;
+    const Eigen::Vector3d up = published_.pose().linear() * motion_->up();
+    const double offset = std::atan2(up.head<2>().norm(), up.z()), sigma = motion_->tiltSigma();
+    return sigma * sigma + 0.5 * offset * offset;
+  }
+
   // Vision failed: the pose goes on with the predicted motion, the window starts anew from there.
   void bridge(const PosedFrame& newest, const MotionSummary& motion, EgoMotionResult* result) {
     ++counters_.estimation_failures;
@@ -427,10 +439,9 @@ class EgoMotion::Impl {
 
   void fillState(const MotionModel& model, EgoMotionResult* result) const {
     result->T_odom_body.pose = published_.pose();
-    result->T_odom_body.covariance = covariance_;
+    result->T_odom_body.covariance = covariance_ + drift_.covariance();
     result->tilt_sigma = model.tiltSigma();
-    // The window does not know gravity: roll and pitch are as uncertain as the vertical is.
-    for (int axis : {3, 4}) {
+    for (int axis : {3, 4}) {  // since the last frame, or without an IMU
       double& variance = result->T_odom_body.covariance(axis, axis);
       variance = std::max(variance, result->tilt_sigma * result->tilt_sigma);
     }
@@ -487,7 +498,8 @@ class EgoMotion::Impl {
   InertialMotion* inertial_ = nullptr;  ///< motion_ when it is inertial
   Window window_;
   PublishedPose published_;
-  Matrix6d covariance_ = Matrix6d::Zero();  ///< of the published pose, odom axes
+  Matrix6d covariance_ = Matrix6d::Zero();  ///< of the published pose by the window, odom axes
+  SystematicDrift drift_;                   ///< what comes on top
 
   // Rotation between two frames by the images alone, in the axes of the IMU; stamps of its clock.
   struct SeenRotation {

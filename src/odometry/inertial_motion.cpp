@@ -10,8 +10,9 @@
 
 namespace multicam_egomotion {
 namespace {
-constexpr double kMinMessageTiltSigma = 0.0175;  // an orientation message is not believed further than 1 deg [rad]
-constexpr double kInitializationSpan = 1.0;      // samples before the first frame that count [s]
+constexpr double kMinMessageTiltSigma = 0.0175;      // an orientation message is not believed further than 1 deg [rad]
+constexpr double kInitializationSpan = 1.0;          // samples before the first frame that count [s]
+constexpr std::int64_t kLatestSamples = 1000000000;  // samples that come later than this are not waited for [ns]
 // What calibration and synchronization of camera and IMU leave over, beyond the image noise.
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
@@ -20,7 +21,11 @@ constexpr double kDisplacementModelShare = 0.005;  // of the distance
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
                                const ImuBuffer* buffer, bool tilt_from_message)
-    : calibration_(calibration), state_(calibration, options), buffer_(buffer), tilt_from_message_(tilt_from_message) {}
+    : calibration_(calibration),
+      state_(calibration, options),
+      buffer_(buffer),
+      tilt_from_message_(tilt_from_message),
+      complete_(state_) {}
 
 void InertialMotion::takeTiltFromMessage() {
   std::vector<ImuSample> samples;
@@ -36,16 +41,53 @@ bool InertialMotion::initialize(std::int64_t stamp_ns) {
   std::vector<ImuSample> samples;
   buffer_->samplesBetween(stamp_ns - static_cast<std::int64_t>(kInitializationSpan * 1e9), stamp_ns, &samples);
   if (!state_.initialize(samples)) return false;
-  state_.propagateTo(stamp_ns, *buffer_);
-  if (tilt_from_message_) takeTiltFromMessage();
-  state_.markFrame();
+  startFromHere();
+  propagateTo(stamp_ns);
+  markFrame();
   initialized_ = true;
   return true;
 }
 
-void InertialMotion::advanceTo(std::int64_t stamp_ns) {
-  state_.propagateTo(stamp_ns, *buffer_);
+void InertialMotion::startFromHere() {
+  complete_ = state_;
+  bridged_.clear();
+  newest_ = Frame();
+  samples_were_short_ = false;
+}
+
+void InertialMotion::propagateTo(std::int64_t stamp_ns) {
+  if (!state_.propagateTo(stamp_ns, *buffer_)) samples_were_short_ = true;
   if (tilt_from_message_) takeTiltFromMessage();
+}
+
+void InertialMotion::advanceTo(std::int64_t stamp_ns) {
+  catchUp();
+  propagateTo(stamp_ns);
+}
+
+void InertialMotion::markFrame() {
+  state_.markFrame();
+  newest_.stamp_ns = state_.stamp();
+  if (samples_were_short_) bridged_.push_back(newest_);
+  newest_ = Frame();
+  if (!samples_were_short_ || state_.stamp() - bridged_.front().stamp_ns > kLatestSamples) startFromHere();
+}
+
+// Does the bridged frames again once samples have come that reach the first of them.
+void InertialMotion::catchUp() {
+  const std::int64_t now_ns = state_.stamp();
+  if (!samples_were_short_ || buffer_->latestUsedStamp() < (bridged_.empty() ? now_ns : bridged_.front().stamp_ns)) {
+    return;
+  }
+  const std::vector<Frame> frames = std::move(bridged_);
+  state_ = complete_;
+  startFromHere();
+  for (const Frame& frame : frames) {
+    propagateTo(frame.stamp_ns);
+    if (frame.vision) correct(*frame.vision, frame.scale_seen);
+    markFrame();
+  }
+  if (state_.stamp() < now_ns) propagateTo(now_ns);
 }
 
 MotionSummary InertialMotion::motionSinceFrame() const {
@@ -64,6 +106,8 @@ MotionSummary InertialMotion::motionSinceFrame() const {
 }
 
 void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
+  newest_.vision = vision;
+  newest_.scale_seen = scale_seen;
   const Eigen::Isometry3d T_imu1_imu2 = imuRelativePose(calibration_.T_body_imu, vision.T_a_b);
   const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
   // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
@@ -107,6 +151,7 @@ TwistWithCovariance InertialMotion::twist() const {
 
 void InertialMotion::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
   state_.restartAt(stamp_ns, attitude_sigma);
+  startFromHere();
   initialized_ = state_.initialized();
 }
 

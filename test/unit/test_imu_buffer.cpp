@@ -45,6 +45,41 @@ TEST(ImuBuffer, RefusesAndCountsUnusableSamples) {
   EXPECT_EQ(buffer.faults().total(), 6u);
 }
 
+TEST(ImuBuffer, AFrozenSensorIsAGap) {
+  ImuBuffer buffer = ramp(20);
+  const std::int64_t last = buffer.latestStamp();
+  for (int i = 1; i <= 100; ++i) EXPECT_EQ(buffer.add(sampleAt(last + i * 5000000, 95.0)), i == 1);
+  EXPECT_EQ(buffer.faults().repeated, 99u);
+  EXPECT_EQ(buffer.faults().total(), 0u);
+  EXPECT_EQ(buffer.latestStamp(), last + 500000000);
+  EXPECT_EQ(buffer.latestUsedStamp(), last + 5000000);
+  std::vector<ImuSample> samples;
+  EXPECT_FALSE(buffer.samplesBetween(last, last + 300000000, &samples));
+  EXPECT_FALSE(buffer.add(sampleAt(last + 500000000, 1.0)));  // its stamp has been
+  EXPECT_TRUE(buffer.add(sampleAt(last + 505000000, 1.0)));
+  EXPECT_NEAR(buffer.spacingBefore(last + 400000000), 0.5, 1e-12);
+}
+
+TEST(ImuBuffer, RepetitionFromTheStartIsNoFault) {
+  ImuBuffer slow_sensor, at_rest;
+  for (int i = 0; i < 400; ++i) {
+    EXPECT_TRUE(slow_sensor.add(sampleAt(1 + i * 5000000, i / 4)));
+    EXPECT_TRUE(at_rest.add(sampleAt(1 + i * 5000000, i < 300 ? 0.0 : i)));
+  }
+  EXPECT_EQ(slow_sensor.faults().repeated, 0u);
+  EXPECT_EQ(at_rest.faults().repeated, 0u);
+}
+
+TEST(ImuBuffer, TellsTheSpacingOfTheSamples) {
+  ImuBuffer buffer = ramp(10);
+  EXPECT_EQ(buffer.spacingBefore(1000000000), 0.0);
+  EXPECT_NEAR(buffer.spacingBefore(1005000000), 0.005, 1e-12);
+  EXPECT_NEAR(buffer.spacingBefore(1007000000), 0.005, 1e-12);
+  EXPECT_NEAR(buffer.spacingBefore(1145000000), 0.1, 1e-12);  // past the end
+  buffer.add(sampleAt(1345000000, 0));
+  EXPECT_NEAR(buffer.spacingBefore(1145000000), 0.3, 1e-12);
+}
+
 TEST(ImuBuffer, InterpolatesBothEnds) {
   const ImuBuffer buffer = ramp(10);
   std::vector<ImuSample> samples;

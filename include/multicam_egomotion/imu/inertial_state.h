@@ -33,11 +33,13 @@ struct InertialStateOptions {
   double still_rate_sigma = 0.005;          ///< quiet: the mean rate is the gyroscope bias to this [rad/s]
   /// Without velocity for this long the accelerometer's mean over that time is used as a weak vertical [s].
   double gravity_window_s = 1.0;
-  /// Samples further apart than this leave motion unseen, which adds the two uncertainties below [s].
-  double max_sample_gap_s = 0.05;
+  /// Between samples further apart than this the motion is unseen: the velocity is taken to last, with the two
+  /// uncertainties below; between closer ones these shrink with the square of their distance [s].
+  double max_sample_gap_s = 0.5;
   double gap_rate_sigma = 0.5;          ///< rate unseen in a gap [rad/s]
   double gap_acceleration_sigma = 3.0;  ///< acceleration unseen in a gap [m/s^2]
-  /// A correction rejected this many times in a row widens the covariance and is then accepted.
+  /// A correction rejected this many times in a row widens the covariance and is then accepted; one of the rotation
+  /// then also widens the gyroscope's noise by what it disagrees, until it agrees again (saturation, a broken sensor).
   int rejections_before_recovery = 3;
 };
 
@@ -77,8 +79,8 @@ class InertialState {
 
   /// Advances by one sample; ignored (counted) if not finite or not later than stamp().
   void propagate(const ImuSample& sample);
-  /// Advances to `stamp_ns` with the samples of the buffer. Where they end early the last one is held, with the
-  /// uncertainty of a gap; the answer is then false.
+  /// Advances to `stamp_ns` with the samples of the buffer. Where they end early the rate (that of the last sample, or
+  /// of vision since) and the velocity are held, with the uncertainty of a gap; the answer is then false.
   bool propagateTo(std::int64_t stamp_ns, const ImuBuffer& buffer);
 
   /// Makes now the frame: clones the attitude, sets the displacement to zero.
@@ -154,10 +156,21 @@ class InertialState {
     double spread() const;
   };
 
-  void step(const ImuSample& sample, double gap_s);
+  /// What the samples do not show of the motion over a step.
+  struct Unseen {
+    double rate_density = 0.0;   // variance of the rotation vector per time [rad^2/s]
+    double force_density = 0.0;  // variance of the velocity per time [m^2/s^3]
+    bool force = false;          // the samples say nothing of the acceleration
+  };
+
+  void propagate(const ImuSample& sample, double spacing_s);
+  void hold(std::int64_t stamp_ns, std::int64_t latest_sample_ns);
+  void advance(const ImuSample& sample, const Unseen& unseen);
+  void step(const ImuSample& sample, const Unseen& unseen);
   /// Mean rate (IMU axes) and acceleration (odom axes) over dt, at the attitude R of its middle.
   void propagateCovariance(const Eigen::Vector3d& rate, const Eigen::Vector3d& acceleration, const Eigen::Matrix3d& R,
-                           double dt, double gap_s);
+                           double dt, const Unseen& unseen);
+  void doubtGyroscope(const Eigen::Vector3d& residual, bool recovered);
   void useGravityWindow();
   double accelerationSigma(const ForceWindow& window, double floor) const;
   void correctVertical(const ForceWindow& window, double acceleration_sigma);
@@ -190,6 +203,9 @@ class InertialState {
   Eigen::Matrix3d rotation_noise_ = Eigen::Matrix3d::Zero();          // gyroscope noise since the frame, axes now
   Eigen::Matrix3d rotation_bias_jacobian_ = Eigen::Matrix3d::Zero();  // of the rotation since the frame, axes now
   ForceWindow window_;                                                // since the last velocity
+  bool held_ = false;                                                 // last_ is no sample
+  std::int64_t rate_seen_ns_ = 0, velocity_seen_ns_ = 0;              // when vision last saw them [ns]
+  double doubted_rate_density_ = 0;  // of a gyroscope that vision contradicts [rad^2/s]
   std::vector<ImuSample> scratch_;
 
   CorrectionCounts rotation_counts_, velocity_counts_, tilt_counts_;

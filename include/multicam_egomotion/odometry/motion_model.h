@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "multicam_egomotion/imu/imu_calibration.h"
 #include "multicam_egomotion/imu/inertial_state.h"
@@ -47,7 +49,8 @@ class MotionModel {
   virtual void reset(bool forget_biases) = 0;
 };
 
-/// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm.
+/// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm. Frames that samples
+/// do not reach are bridged; when the samples come, up to a second late, all is done again with them.
 class InertialMotion : public MotionModel {
  public:
   /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9).
@@ -60,7 +63,7 @@ class InertialMotion : public MotionModel {
   std::int64_t stamp() const override { return state_.stamp(); }
   MotionSummary motionSinceFrame() const override;
   void correct(const RelativeMotion& vision, bool scale_seen) override;
-  void markFrame() override { state_.markFrame(); }
+  void markFrame() override;
   Eigen::Vector3d up() const override;
   Eigen::Vector3d upAtFrame() const override;
   double tiltSigma() const override { return state_.tiltSigma(); }
@@ -71,13 +74,28 @@ class InertialMotion : public MotionModel {
   void reset(bool forget_biases) override;
 
  private:
+  /// What vision said at a frame.
+  struct Frame {
+    std::int64_t stamp_ns = 0;
+    std::optional<RelativeMotion> vision;
+    bool scale_seen = false;
+  };
+
+  void takeTiltFromMessage();
+  void propagateTo(std::int64_t stamp_ns);
+  void catchUp();
+  void startFromHere();
+
   ImuCalibration calibration_;
   InertialState state_;
-  void takeTiltFromMessage();
-
   const ImuBuffer* buffer_;
   bool tilt_from_message_;
   bool initialized_ = false;
+
+  InertialState complete_;           // at the last frame that the samples reached
+  std::vector<Frame> bridged_;       // the frames since then
+  Frame newest_;                     // not yet marked
+  bool samples_were_short_ = false;  // since complete_
 };
 
 /// Goes on turning and moving as between the last two frames; the vertical is carried by visual rotation.
