@@ -20,7 +20,7 @@ enum class WarpModel { kTranslation, kAffine };
 
 struct PatchAlignmentOptions {
   int max_iterations = 10;
-  double epsilon_px = 0.003;      ///< stops when an iteration moves the patch less
+  double epsilon_px = 0.003;     ///< stops when an iteration moves the patch less
   double max_shift_px = 3.0;     ///< from the initial guess; further away is a failure
   double min_correlation = 0.8;  ///< zero-mean normalized cross-correlation at the result
 };

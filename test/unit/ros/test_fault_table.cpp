@@ -215,7 +215,11 @@ std::vector<FaultRow> simulatedRows() {
           .drifts(1.5, 0.02, 0.5),
       FaultRow("time_jump_forward", {"time_jump:at=2.5,by=0.4"}).during(2.5, 2.5).stampsOffBy(0.4).says("COASTING"),
       FaultRow("time_gap", {"time_gap:from=2.5,to=3"}).during(2.5, 3.0).says("COASTING").poses(0.9),
-      FaultRow("bag_loop", {"bag_loop:times=2"}).counts("time jumps", 1).counts("odom epoch", 1).epochs(2),
+      FaultRow("bag_loop", {"bag_loop:times=2"})
+          .counts("time jumps", 1)
+          .counts("odom epoch", 1)
+          .epochs(2)
+          .drifts(1.5, 0.01, 0.3),
       FaultRow("duplicate_images", {"duplicate_images:every=2"}).counts("rejected images", 50),
       FaultRow("duplicate_imu", {"duplicate_imu:every=3"}).counts("rejected IMU samples", 300),
       FaultRow("out_of_order_images", {"out_of_order_images:camera=0,every=5,delay=0.08"}).counts("late images", 10),
@@ -276,7 +280,7 @@ std::vector<FaultRow> simulatedRows() {
           .during(2.5, 3.5)
           .counts("rejected IMU samples", 200)
           .counts("frame sets without IMU", 10),
-      FaultRow("imu_bias", {"imu_bias"}).counts("gyroscope bias [rad/s]", 0.05).drifts(1.5, 0.02, 2.0),
+      FaultRow("imu_bias", {"imu_bias"}).counts("gyroscope bias [rad/s]", 0.05).drifts(1.5, 0.03, 2.0),
       FaultRow("imu_orientation_unused", {"imu_orientation"}),
       FaultRow("imu_orientation_without_covariance", {"imu_orientation"}).with("imu_orientation", "message"),
   };
