@@ -19,7 +19,7 @@ struct WindowOptions {
   double keyframe_parallax_px = 15.0;  ///< median image motion since the last keyframe, rotation taken out [px]
   double keyframe_min_shared = 0.6;    ///< share of the tracks that the last keyframe saw too
   double initial_pixel_sigma = 0.5;    ///< image noise until it has been measured [px]
-  double min_pixel_sigma = 0.1;       ///< [px]
+  double min_pixel_sigma = 0.1;        ///< [px]
   double max_pixel_sigma = 2.0;        ///< [px]
   double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
   BundleOptions bundle;
