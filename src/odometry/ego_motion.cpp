@@ -6,16 +6,18 @@
 #include <cmath>
 #include <deque>
 #include <unordered_set>
+#include <utility>
 
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/gyroscope_check.h"
-#include "multicam_egomotion/imu/imu_buffer.h"
-#include "multicam_egomotion/imu/imu_monitor.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/coasting.h"
 #include "multicam_egomotion/odometry/feature_report.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
+#include "multicam_egomotion/odometry/learned_motion.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 #include "multicam_egomotion/odometry/published_pose.h"
+#include "multicam_egomotion/odometry/sensor_input.h"
 #include "multicam_egomotion/odometry/systematic_drift.h"
 
 namespace multicam_egomotion {
@@ -23,13 +25,12 @@ namespace {
 
 constexpr double kMovingParallax = 1.0;        // image motion that shows a translation for certain [px]
 constexpr double kUnknownSpeedShare = 0.2;     // of the velocity's sigma, taken for the speed of which nothing is known
-constexpr double kFarDistance = 20.0;          // what does not move in the images is taken to be no further away [m]
-constexpr double kUnknownDistance = 100.0;     // sigma of a displacement of which only the direction is seen [m]
-constexpr double kStillParallax = 0.1;         // image motion that cannot be told from none [px]
-constexpr double kJumpBack = 0.5;              // stamps that go back by more are a jump of the clock [s]
 constexpr double kJumpPositionSigma = 1.0;     // contract 13 [m]
 constexpr double kJumpAttitudeSigma = 0.1745;  // contract 13: 10 deg [rad]
-constexpr double kDefaultPeriod = 0.1;         // between frame sets until it has been measured [s]
+constexpr double kLongOutage = 0.5;            // of all images [s]
+constexpr double kWellPredicted = 0.0175;      // sigma of the rotation over an outage: 1 deg [rad]
+constexpr double kSureSigmas = 3.0;            // of a predicted displacement that is surely some,
+constexpr double kSureDisplacement = 0.02;     // if it is this long as well [m]
 constexpr double kSettledTilt = 0.0175;        // sigma of the vertical from which odom is settled: 1 deg [rad]
 constexpr double kMaxSettling = 2.0;           // settled after that in any case [s]
 constexpr double kFewInliers = 0.5;            // share of the tracks below which the gyroscope may be wrong
@@ -47,16 +48,16 @@ class EgoMotion::Impl {
   Impl(const CameraRig& rig, const ImuCalibration& imu, const EgoMotionOptions& options)
       : rig_(rig),
         options_(options),
-        assembler_(rig.size(), options.assembler, timeOffsets(rig)),
+        input_(rig, imu, options),
         tracker_(rig, options.tracker),
-        imu_monitor_(imu.rate_hz, options.inertial.gravity),
         R_body_imu_(imu.T_body_imu.linear()),
-        window_(options.window) {
+        window_(options.window),
+        coasting_(options.max_coast_s) {
     validate(options);
     options_.inertial.initial_velocity_sigma = options.initial_velocity_sigma;
     if (options.use_imu) {
       auto motion =
-          std::make_unique<InertialMotion>(imu, options_.inertial, &imu_buffer_, options.imu_orientation == "message");
+          std::make_unique<InertialMotion>(imu, options_.inertial, &input_.imu(), options.imu_orientation == "message");
       inertial_ = motion.get();
       motion_ = std::move(motion);
     } else {
@@ -65,73 +66,46 @@ class EgoMotion::Impl {
   }
 
   void addImu(const ImuSample& sample) {
-    if (!options_.use_imu) return;
-    imu_monitor_.add(sample);
-    if (!imu_buffer_.empty() && sample.stamp_ns > 0 &&
-        seconds(imu_buffer_.latestStamp() - sample.stamp_ns) > kJumpBack) {
-      imu_buffer_.clear();
-    }
-    imu_buffer_.add(sample);
+    if (input_.addImu(sample)) timeJumpedBack();
   }
-
   void addImage(const CameraImage& image, std::int64_t now_ns) {
-    if (image.stamp_ns > 0 && last_stamp_ns_ > 0 && seconds(last_stamp_ns_ - image.stamp_ns) > kJumpBack) {
-      timeJump(image.stamp_ns);
-    }
-    assembler_.add(image, now_ns);
+    if (input_.addImage(image, now_ns)) timeJumpedBack();
   }
 
   std::vector<EgoMotionResult> advance(std::int64_t now_ns) {
-    now_ns_ = std::max(now_ns_, now_ns);
-    for (FrameSet& set : assembler_.advance(now_ns)) pending_.push_back(std::move(set));
-    std::vector<EgoMotionResult> results;
-    while (!pending_.empty()) {
-      const FrameSet& set = pending_.front();
-      if (options_.use_imu && imu_buffer_.latestStamp() < inertialStamp(set) &&
-          seconds(now_ns - set.stamp_ns) < options_.max_imu_wait_s) {
-        break;
-      }
-      process(set, &results);
-      pending_.pop_front();
-    }
-    if (pending_.empty()) coast(&results);
-    return results;
+    input_.advance(now_ns);
+    return processReady();
   }
 
   std::vector<EgoMotionResult> finish() {
-    return advance(now_ns_ + nanoseconds(options_.assembler.sync_timeout_s + options_.max_imu_wait_s + 1.0));
+    input_.end();
+    return processReady();
   }
 
   void reset(bool forget_biases, const Eigen::Isometry3d* T_odom_body) {
-    restart_pose_.reset();
-    if (T_odom_body) restart_pose_ = *T_odom_body;
-    forgetMotion(forget_biases);
-    drift_ = SystematicDrift();
-    ++odom_epoch_;
+    input_.forgetImages();
+    startEpoch(forget_biases, T_odom_body);
   }
 
   std::optional<EgoMotionResult> predictToLatestImu() const {
-    if (!inertial_ || !inertial_->initialized() || last_stamp_ns_ == 0 || lost() ||
-        imu_buffer_.latestStamp() <= motion_->stamp()) {
+    if (!inertial_ || !inertial_->initialized() || last_stamp_ns_ == 0 || coasting_.lost() ||
+        input_.imu().latestStamp() <= motion_->stamp()) {
       return std::nullopt;
     }
     InertialMotion ahead = *inertial_;
-    ahead.advanceTo(imu_buffer_.latestStamp());
-    return predicted(ahead, imu_buffer_.latestStamp());
+    ahead.advanceTo(input_.imu().latestStamp());
+    return predicted(ahead, input_.imu().latestStamp());
   }
 
   EgoMotionCounters counters() const {
     EgoMotionCounters counters = counters_;
-    const FrameAssemblerCounters& assembler = assembler_.counters();
-    counters.rejected_imu = imu_buffer_.faults().total();
-    counters.late_images += assembler.late_images;
-    counters.rejected_images = assembler.invalid_images + assembler.implausible_stamps + assembler.duplicate_images +
-                               tracker_.counters().ignored_images;
+    input_.count(&counters);
+    counters.rejected_images += tracker_.counters().ignored_images;
     return counters;
   }
 
   std::vector<std::string> faults() const {
-    std::vector<std::string> all = imu_monitor_.faults();
+    std::vector<std::string> all = input_.faults();
     if (gyroscope_check_.state() == GyroscopeCheck::State::kDisagrees) {
       all.push_back("gyroscope " + gyroscope_check_.report());
     }
@@ -145,25 +119,21 @@ class EgoMotion::Impl {
   std::function<void(const char*)> observer_;
 
  private:
-  static std::vector<std::int64_t> timeOffsets(const CameraRig& rig) {
-    std::vector<std::int64_t> offsets;
-    for (const RigCamera& camera : rig.cameras()) offsets.push_back(nanoseconds(camera.time_offset_s));
-    return offsets;
-  }
-
   void stage(const char* name) const {
     if (observer_) observer_(name);
   }
 
-  // Reference stamp of a set on the IMU's clock.
-  std::int64_t inertialStamp(const FrameSet& set) const {
-    return set.stamp_ns + nanoseconds(rig_.camera(set.images.front().camera).time_offset_s);
+  std::vector<EgoMotionResult> processReady() {
+    std::vector<EgoMotionResult> results;
+    while (std::optional<FrameSet> set = input_.next()) process(&*set, &results);
+    const double wait = options_.assembler.sync_timeout_s + options_.max_imu_wait_s;
+    if (!input_.waiting()) coast(input_.imu().latestStamp() - coasting_.period() - nanoseconds(wait), &results);
+    return results;
   }
 
   // Camera poses in the body at the reference stamp, carried there with the predicted twist (contract 2).
-  std::vector<Eigen::Isometry3d> cameraPoses(const FrameSet& set) const {
+  std::vector<Eigen::Isometry3d> cameraPoses(const FrameSet& set, std::int64_t reference_ns) const {
     const TwistWithCovariance twist = motion_->twist();
-    const std::int64_t reference_ns = inertialStamp(set);
     std::vector<Eigen::Isometry3d> poses;
     for (const RigCamera& camera : rig_.cameras()) poses.push_back(camera.T_body_cam);
     for (const CameraImage& image : set.images) {
@@ -176,17 +146,23 @@ class EgoMotion::Impl {
     return poses;
   }
 
-  void process(const FrameSet& set, std::vector<EgoMotionResult>* results) {
+  void process(FrameSet* set, std::vector<EgoMotionResult>* results) {
+    const std::int64_t stamp_ns = input_.inertialStamp(*set);
+    if (jumpedAhead(stamp_ns)) goOnAfterJump(seconds(stamp_ns - motion_->stamp()));
+    if (last_stamp_ns_ > 0 && coasting_.framesMissingBefore(set->stamp_ns)) {
+      coast(set->stamp_ns - coasting_.period() / 2, results);
+    }
     ++counters_.frame_sets;
-    results->push_back(newResult(set.stamp_ns));
+    results->push_back(newResult(set->stamp_ns));
     EgoMotionResult& result = results->back();
     result.image_stamps_ns.assign(rig_.size(), 0);
-    for (const CameraImage& image : set.images) result.image_stamps_ns[image.camera] = image.stamp_ns;
+    for (const CameraImage& image : set->images) result.image_stamps_ns[image.camera] = image.stamp_ns;
 
-    const std::int64_t stamp_ns = inertialStamp(set);
-    if (options_.use_imu && imu_buffer_.latestStamp() < stamp_ns) ++counters_.frame_sets_without_imu;
+    if (options_.use_imu && input_.imu().latestStamp() < stamp_ns) ++counters_.frame_sets_without_imu;
     if (!motion_->initialized()) {
       if (!motion_->initialize(stamp_ns)) return;
+    } else if (restart_motion_) {
+      motion_->restartAt(stamp_ns, kJumpAttitudeSigma);
     } else if (stamp_ns <= motion_->stamp()) {
       ++counters_.late_images;
       results->pop_back();
@@ -194,34 +170,58 @@ class EgoMotion::Impl {
     } else {
       motion_->advanceTo(stamp_ns);
     }
-    imu_buffer_.prune(stamp_ns - nanoseconds(kImuHistory));
+    restart_motion_ = false;
+    imu_clock_ns_ = stamp_ns - set->stamp_ns;
+    input_.pruneImu(stamp_ns - nanoseconds(kImuHistory));
 
-    PosedFrame newest;
-    newest.T_body_cam = cameraPoses(set);
     const bool first = last_stamp_ns_ == 0;
     const MotionSummary motion = motion_->motionSinceFrame();
-    newest.frame = tracker_.track(set, first ? Eigen::Isometry3d::Identity() : motion.T_a_b, newest.T_body_cam);
-    newest.frame.stamp_ns = set.stamp_ns;
+    input_.takeOutFrozen(expected(motion, stamp_ns), set);
+    if (set->images.empty()) {
+      if (first) return;
+      result = predicted(*motion_, set->stamp_ns);
+      coasting_.markTick(set->stamp_ns);
+      return;
+    }
+    // Patches that have been out of sight for long are found again only roughly: the pose that was coasted is better.
+    const bool anew = !first && seconds(set->stamp_ns - last_stamp_ns_) > kLongOutage &&
+                      std::sqrt(motion.rotation_covariance.trace() / 3.0) < kWellPredicted;
+    if (anew) tracker_.reset();
+    bool estimated = true;
+    PosedFrame newest;
+    newest.T_body_cam = cameraPoses(*set, stamp_ns);
+    newest.frame = tracker_.track(*set, first ? Eigen::Isometry3d::Identity() : motion.T_a_b, newest.T_body_cam);
+    newest.frame.stamp_ns = set->stamp_ns;
     stage("tracking");
 
     if (first) {
       begin(newest, &result);
     } else {
-      if (last_period_ns_ == 0 || set.stamp_ns - last_stamp_ns_ < 2 * last_period_ns_) {
-        last_period_ns_ = set.stamp_ns - last_stamp_ns_;
-      }
       result.previous_stamp_ns = last_stamp_ns_;
-      if (!estimate(newest, motion, &result)) bridge(newest, motion, &result);
+      estimated = !anew && estimate(newest, motion, &result);
+      if (!estimated) bridge(newest, motion, &result);
+      if (!estimated && !anew) ++counters_.estimation_failures;
     }
     motion_->markFrame();
     inertial_last_ns_ = stamp_ns;
-    last_stamp_ns_ = set.stamp_ns;
-    last_output_ns_ = set.stamp_ns;
+    last_stamp_ns_ = set->stamp_ns;
+    coasting_.markFrame(set->stamp_ns, estimated);
     drift_.follow(published_.pose().translation(), tiltVariance());
     fillState(*motion_, &result);
     result.features = reportFeatures(previous_.frame, newest.frame, inlier_tracks_);
     previous_ = std::move(newest);
     stage("frame");
+  }
+
+  ExpectedMotion expected(const MotionSummary& motion, std::int64_t stamp_ns) const {
+    const double displacement = motion.T_a_b.translation().norm();
+    ExpectedMotion expected;
+    expected.rotation = logSO3(motion.T_a_b.linear());
+    expected.rotation_sigma = std::sqrt(motion.rotation_covariance.trace());
+    expected.translation = displacement > kSureDisplacement &&
+                           displacement > kSureSigmas * std::sqrt(motion.translation_covariance.trace());
+    expected.duration_s = seconds(stamp_ns - inertial_last_ns_);
+    return expected;
   }
 
   // First frame of an odom epoch (contract 5).
@@ -234,7 +234,6 @@ class EgoMotion::Impl {
     }
     settled_ = !options_.use_imu;
     epoch_start_ns_ = motion_->stamp();
-    last_vision_ns_ = newest.frame.stamp_ns;
     covariance_ = restart_covariance_;
     published_.start(T_odom_body);
     restart_pose_.reset();
@@ -273,9 +272,9 @@ class EgoMotion::Impl {
     if (!inertial_) return;
     unchecked_.push_back({inertial_last_ns_, motion_->stamp(), R_body_imu_.transpose() * logSO3(R_previous_body)});
     while (!unchecked_.empty() &&
-           unchecked_.front().stamp2_ns + nanoseconds(GyroscopeCheck::kLargestOffset) <= imu_buffer_.latestStamp()) {
+           unchecked_.front().stamp2_ns + nanoseconds(GyroscopeCheck::kLargestOffset) <= input_.imu().latestStamp()) {
       const SeenRotation& seen = unchecked_.front();
-      gyroscope_check_.add(seen.stamp1_ns, seen.stamp2_ns, seen.rotation, imu_buffer_);
+      gyroscope_check_.add(seen.stamp1_ns, seen.stamp2_ns, seen.rotation, input_.imu());
       unchecked_.pop_front();
     }
   }
@@ -312,7 +311,9 @@ class EgoMotion::Impl {
     inlier_tracks_.insert(estimate.inliers.begin(), estimate.inliers.end());
 
     compareWithGyroscope(estimate.vision.T_a_b.linear());
-    learn(estimate, predicted.T_a_b.translation(), consensus.parallax_px);
+    const LearnedMotion learned = learnedMotion(estimate, predicted.T_a_b.translation(), scale_seen_,
+                                                consensus.parallax_px, rig_.camera(0).model.focalLength());
+    motion_->correct(learned.vision, learned.use_displacement);
     if (estimate.scale_state != ScaleState::kNotApplicable) {
       scale_seen_ = estimate.scale_state == ScaleState::kObservable;
     }
@@ -330,33 +331,7 @@ class EgoMotion::Impl {
     result->pixel_sigma = estimate.pixel_sigma;
     result->keyframe = estimate.keyframe;
     result->points = window_.points();
-    last_vision_ns_ = newest.frame.stamp_ns;
     return true;
-  }
-
-  // What vision saw goes into the motion model: the displacement where its scale is seen or where nothing moves, else
-  // its direction.
-  void learn(const WindowEstimate& estimate, const Eigen::Vector3d& predicted, double parallax_px) {
-    const bool standing = estimate.scale_state == ScaleState::kNotApplicable;
-    RelativeMotion learned = estimate.vision;
-    Eigen::Ref<Eigen::Matrix3d> covariance = learned.covariance.topLeftCorner<3, 3>();
-    bool use_displacement = true;
-    if (standing && !scale_seen_) {
-      const double sigma = kFarDistance * std::max(parallax_px, kStillParallax) / rig_.camera(0).model.focalLength();
-      learned.T_a_b.translation().setZero();
-      covariance = sigma * sigma * Eigen::Matrix3d::Identity();
-    } else if (!standing && estimate.scale_state != ScaleState::kObservable) {
-      const double seen = learned.T_a_b.translation().norm();
-      const Eigen::Vector3d direction = learned.T_a_b.translation() / std::max(seen, 1e-9);
-      const double distance = direction.dot(predicted);
-      use_displacement = seen > 1e-9 && distance > 0.0;
-      const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - direction * direction.transpose();
-      learned.T_a_b.translation() = distance * direction;
-      covariance = (across * covariance * across * (distance * distance / (seen * seen)) +
-                    kUnknownDistance * kUnknownDistance * direction * direction.transpose())
-                       .eval();
-    }
-    motion_->correct(learned, use_displacement);
   }
 
   // Turns the attitude towards the vertical: at once while it is being found after a start in motion, later slowly
@@ -379,47 +354,39 @@ class EgoMotion::Impl {
     return sigma * sigma + 0.5 * offset * offset;
   }
 
-  // Vision failed: the pose goes on with the predicted motion, the window starts anew from there.
+  // Vision failed or starts anew: the pose goes on with the predicted motion, the window starts anew from there.
   void bridge(const PosedFrame& newest, const MotionSummary& motion, EgoMotionResult* result) {
-    ++counters_.estimation_failures;
     inlier_tracks_.clear();
     const Matrix6d motion_covariance = poseCovariance(motion);
     covariance_ = propagateCovariance(covariance_, published_.pose(), motion.T_a_b, motion_covariance);
     published_.move(motion.T_a_b);
     startWindow(newest);
     result->T_previous_body = {motion.T_a_b, motion_covariance};
-    result->status = coastStatus(newest.frame.stamp_ns);
+    result->status = coasting_.status(newest.frame.stamp_ns);
     result->has_pose = result->has_relative_pose = result->status == EgoMotionStatus::kCoasting;
     result->scale_state = ScaleState::kUnobservable;
     result->scale_sigma = std::numeric_limits<double>::infinity();
     result->keyframe = true;
   }
 
-  // Poses at the nominal rate while no images come (contract 3).
-  void coast(std::vector<EgoMotionResult>* results) {
-    if (!inertial_ || last_stamp_ns_ == 0) return;
-    const std::int64_t period = last_period_ns_ > 0 ? last_period_ns_ : nanoseconds(kDefaultPeriod);
-    const std::int64_t wait = period + nanoseconds(options_.assembler.sync_timeout_s + options_.max_imu_wait_s);
-    while (imu_buffer_.latestStamp() >= last_output_ns_ + period + wait && !lost()) {
-      last_output_ns_ += period;
-      if (last_output_ns_ <= motion_->stamp()) continue;
-      motion_->advanceTo(last_output_ns_);
-      results->push_back(predicted(*motion_, last_output_ns_));
+  // Poses while no images come (contract 3); not across a hole in the IMU data that is too long to coast.
+  void coast(std::int64_t until_ns, std::vector<EgoMotionResult>* results) {
+    while (const auto tick_ns = inertial_ ? coasting_.nextTick(until_ns) : std::nullopt) {
+      const std::int64_t stamp_ns = *tick_ns + imu_clock_ns_;
+      if (stamp_ns > motion_->stamp()) {
+        if (input_.imu().largestGap(motion_->stamp(), until_ns + imu_clock_ns_) > options_.max_coast_s) return;
+        motion_->advanceTo(stamp_ns);
+        results->push_back(predicted(*motion_, *tick_ns));
+      }
+      coasting_.markTick(*tick_ns);
     }
-  }
-
-  bool lost() const { return seconds(last_output_ns_ - last_vision_ns_) > options_.max_coast_s; }
-
-  EgoMotionStatus coastStatus(std::int64_t stamp_ns) const {
-    return seconds(stamp_ns - last_vision_ns_) > options_.max_coast_s ? EgoMotionStatus::kLost
-                                                                      : EgoMotionStatus::kCoasting;
   }
 
   // The published pose carried on by a motion model that stands at `stamp_ns`.
   EgoMotionResult predicted(const MotionModel& model, std::int64_t stamp_ns) const {
     EgoMotionResult result = newResult(stamp_ns);
     result.previous_stamp_ns = last_stamp_ns_;
-    result.status = coastStatus(stamp_ns);
+    result.status = coasting_.status(stamp_ns);
     result.has_pose = result.status == EgoMotionStatus::kCoasting;
     const MotionSummary motion = model.motionSinceFrame();
     const Matrix6d motion_covariance = poseCovariance(motion);
@@ -459,44 +426,63 @@ class EgoMotion::Impl {
     return kept;
   }
 
-  // Stamps went back (contract 13).
-  void timeJump(std::int64_t stamp_ns) {
-    ++counters_.time_jumps;
-    if (options_.on_time_jump == "reset") {
-      reset(false, nullptr);
-      return;
-    }
-    Matrix6d covariance = covariance_;
-    covariance.diagonal().head<3>().array() += kJumpPositionSigma * kJumpPositionSigma;
-    covariance.diagonal().tail<3>().array() += kJumpAttitudeSigma * kJumpAttitudeSigma;
-    forgetMotion(false);
-    restart_pose_ = published_.pose();
-    restart_covariance_ = covariance;
-    if (inertial_ && stamp_ns > 0) motion_->restartAt(stamp_ns, kJumpAttitudeSigma);
+  // Neither images nor IMU for so long that the clock has jumped, or might as well have.
+  bool jumpedAhead(std::int64_t stamp_ns) const {
+    if (last_stamp_ns_ == 0 || seconds(stamp_ns - motion_->stamp()) <= options_.max_coast_s) return false;
+    return !inertial_ || input_.imu().largestGap(motion_->stamp(), stamp_ns) > options_.max_coast_s;
   }
 
-  void forgetMotion(bool forget_biases) {
-    assembler_.reset();
-    pending_.clear();
-    tracker_.reset();
+  // Contract 13.
+  void timeJumpedBack() {
+    if (last_stamp_ns_ == 0) return;
+    if (options_.on_time_jump == "continue") {
+      goOnAfterJump(0.0);
+    } else {
+      ++counters_.time_jumps;
+      startEpoch(false, nullptr);
+    }
+  }
+
+  // The pose is kept, with what may have happened meanwhile in its covariance.
+  void goOnAfterJump(double unseen_s) {
+    ++counters_.time_jumps;
+    const double position_sigma = kJumpPositionSigma + unseen_s * motion_->twist().linear.norm();
+    restart_pose_ = published_.pose();
+    restart_covariance_ = covariance_;
+    restart_covariance_.diagonal().head<3>().array() += position_sigma * position_sigma;
+    restart_covariance_.diagonal().tail<3>().array() += kJumpAttitudeSigma * kJumpAttitudeSigma;
+    restart_motion_ = true;
+    forgetTracks();
+  }
+
+  void startEpoch(bool forget_biases, const Eigen::Isometry3d* T_odom_body) {
+    forgetTracks();
     motion_->reset(forget_biases);
+    restart_motion_ = false;
+    restart_pose_.reset();
+    if (T_odom_body) restart_pose_ = *T_odom_body;
+    restart_covariance_.setZero();
+    drift_ = SystematicDrift();
+    ++odom_epoch_;
+  }
+
+  void forgetTracks() {
+    tracker_.reset();
     previous_ = PosedFrame();
     inlier_tracks_.clear();
     unchecked_.clear();
-    last_stamp_ns_ = last_output_ns_ = last_vision_ns_ = 0;
-    now_ns_ = 0;
+    coasting_.reset();
+    last_stamp_ns_ = 0;
     scale_seen_ = false;
-    restart_covariance_.setZero();
   }
 
-  FrameAssembler assembler_;
+  SensorInput input_;
   FeatureTracker tracker_;
-  ImuBuffer imu_buffer_;
-  ImuMonitor imu_monitor_;
   Eigen::Matrix3d R_body_imu_;
   std::unique_ptr<MotionModel> motion_;
   InertialMotion* inertial_ = nullptr;  ///< motion_ when it is inertial
   Window window_;
+  Coasting coasting_;
   PublishedPose published_;
   Matrix6d covariance_ = Matrix6d::Zero();  ///< of the published pose by the window, odom axes
   SystematicDrift drift_;                   ///< what comes on top
@@ -509,15 +495,16 @@ class EgoMotion::Impl {
   std::deque<SeenRotation> unchecked_;  ///< not yet compared with the gyroscope
   std::int64_t inertial_last_ns_ = 0;   ///< last_stamp_ns_ on the clock of the IMU
 
-  std::deque<FrameSet> pending_;  ///< complete, waiting for the IMU
   PosedFrame previous_;
   std::unordered_set<TrackId> inlier_tracks_;
   std::optional<Eigen::Isometry3d> restart_pose_;
   Matrix6d restart_covariance_ = Matrix6d::Zero();
+  bool restart_motion_ = false;  ///< at the next frame, after a jump of the clock
   bool scale_seen_ = false;
   bool settled_ = false;  ///< the vertical has been found since the start of the odom epoch
   std::int64_t epoch_start_ns_ = 0;
-  std::int64_t now_ns_ = 0, last_stamp_ns_ = 0, last_output_ns_ = 0, last_vision_ns_ = 0, last_period_ns_ = 0;
+  std::int64_t last_stamp_ns_ = 0;
+  std::int64_t imu_clock_ns_ = 0;  ///< of the IMU against the reference stamps
   std::uint32_t odom_epoch_ = 0;
   EgoMotionCounters counters_;
 };

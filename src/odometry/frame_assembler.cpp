@@ -143,12 +143,24 @@ bool FrameAssembler::isLate(const Camera& camera, std::int64_t time_ns) const {
   return time_ns <= (in_last ? camera.last_used_ns : last_.end_ns);
 }
 
-// Whether the camera should have an image until `end_ns`, by the shortest of its last intervals: a frame lost only
-// widens one.
-bool FrameAssembler::isDue(const Camera& camera, std::int64_t end_ns) const {
+// A frame lost only widens one of the last intervals. 0 before there is one.
+std::int64_t FrameAssembler::shortestInterval(const Camera& camera) {
   const int n = std::min<int>(camera.intervals, camera.intervals_ns.size());
-  if (n == 0) return true;
-  const std::int64_t period_ns = *std::min_element(camera.intervals_ns.begin(), camera.intervals_ns.begin() + n);
+  return n == 0 ? 0 : *std::min_element(camera.intervals_ns.begin(), camera.intervals_ns.begin() + n);
+}
+
+FrameAssembler::Delivery FrameAssembler::delivery(int camera, std::int64_t now_ns) const {
+  const Camera& one = cameras_[camera];
+  const std::int64_t period_ns = shortestInterval(one);
+  const bool comes = period_ns > 0 && now_ns - one.newest_arrival_ns <= kMissesUntilNotLive * period_ns + timeout_ns_;
+  if (!one.live) return comes ? Delivery::kLate : Delivery::kNone;
+  return comes || period_ns == 0 ? Delivery::kInTime : Delivery::kNone;
+}
+
+// Whether the camera should have an image until `end_ns`.
+bool FrameAssembler::isDue(const Camera& camera, std::int64_t end_ns) const {
+  const std::int64_t period_ns = shortestInterval(camera);
+  if (period_ns == 0) return true;
   return camera.newest_ns + period_ns - period_ns / 16 <= end_ns + slop_ns_;
 }
 

@@ -45,12 +45,10 @@ void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, 
   states_[0].stamp_ns = stamp_ns;
   states_[0].pose = toBundle(T_odom_body);
   states_[0].keyframe = true;
-  // Local perturbations: odom-axes covariance turned into body axes.
-  Matrix6d to_local = Matrix6d::Zero();
-  to_local.topLeftCorner<3, 3>() = to_local.bottomRightCorner<3, 3>() = T_odom_body.linear().transpose();
+  start_ = {T_odom_body, covariance};
   prior_.poses = {0};
   prior_.linearization = {states_[0].pose};
-  prior_.H = (to_local * covariance * to_local.transpose() + 1e-8 * Matrix6d::Identity()).inverse();
+  prior_.H = 1e8 * Matrix6d::Identity();
   prior_.b = Eigen::VectorXd::Zero(6);
   addObservations(frame, T_body_cam);
 }
@@ -218,6 +216,10 @@ void Window::optimize(WindowEstimate* estimate) {
   estimate->T_odom_body = toIsometry(states_[newest].pose);
   estimate->pixel_sigma = pixel_sigma_;
   computeMarginals(&bundle, options_.bundle, white_share_, estimate);
+  // All moves with the start.
+  Matrix6d with_start = Matrix6d::Identity();
+  with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
+  estimate->covariance += with_start * start_.covariance * with_start.transpose();
   classify(estimate);
   estimate->keyframe = wantsKeyframe(estimate);
   if (!estimate->keyframe) return;
@@ -366,6 +368,7 @@ void Window::rotateAbout(const Eigen::Vector3d& pivot, const Eigen::Matrix3d& R)
   };
   for (State& state : states_) turn(&state.pose);
   for (BundlePose& pose : prior_.linearization) turn(&pose);
+  start_.T_a_b.translation() = pivot + R * (start_.T_a_b.translation() - pivot);
   for (auto& [track, landmark] : landmarks_) {
     landmark.origin = pivot + R * (landmark.origin - pivot);
     landmark.direction = R * landmark.direction;

@@ -56,6 +56,9 @@ class FrameAssembler {
 
   const FrameAssemblerCounters& counters() const { return counters_; }
   bool live(int camera) const { return cameras_[camera].live; }
+  enum class Delivery { kInTime, kLate, kNone };
+  /// Whether a camera's images come, and in time to be used: not live, or overdue at `now_ns`, is not in time.
+  Delivery delivery(int camera, std::int64_t now_ns) const;
   int liveCameras() const;
 
  private:
@@ -87,6 +90,7 @@ class FrameAssembler {
   bool plausible(Camera* camera, std::int64_t time_ns, std::int64_t now_ns);
   bool isDuplicate(const Camera& camera, std::int64_t time_ns) const;
   bool isLate(const Camera& camera, std::int64_t time_ns) const;
+  static std::int64_t shortestInterval(const Camera& camera);
   bool isDue(const Camera& camera, std::int64_t end_ns) const;
   bool nextCandidate(Candidate* candidate) const;
   void take(const Candidate& candidate, std::vector<FrameSet>* ready);

@@ -99,6 +99,9 @@ class Window {
   std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
   std::map<TrackId, BundleLandmark> landmarks_;
   PosePrior prior_;
+  /// Pose where the window started and its covariance, which stays outside: with a weak prior the small errors of
+  /// linearization that marginalization leaves would move the whole window.
+  RelativeMotion start_;
 };
 
 }  // namespace multicam_egomotion

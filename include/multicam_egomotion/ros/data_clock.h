@@ -11,9 +11,10 @@ namespace multicam_egomotion {
 class DataClock {
  public:
   std::int64_t advance(std::int64_t stamp_ns) {
+    if (stamp_ns <= 0) return now_ns_;
     const bool jump = started_ && !near(stamp_ns, now_ns_);
     if (!jump ? stamp_ns > now_ns_ : near(stamp_ns, elsewhere_ns_)) now_ns_ = stamp_ns;
-    if (jump) elsewhere_ns_ = stamp_ns;
+    elsewhere_ns_ = jump ? stamp_ns : 0;
     started_ = true;
     return now_ns_;
   }
