@@ -11,6 +11,7 @@
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/gyroscope_check.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/camera_poses.h"
 #include "multicam_egomotion/odometry/coasting.h"
 #include "multicam_egomotion/odometry/feature_report.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
@@ -131,21 +132,6 @@ class EgoMotion::Impl {
     return results;
   }
 
-  // Camera poses in the body at the reference stamp, carried there with the predicted twist (contract 2).
-  std::vector<Eigen::Isometry3d> cameraPoses(const FrameSet& set, std::int64_t reference_ns) const {
-    const TwistWithCovariance twist = motion_->twist();
-    std::vector<Eigen::Isometry3d> poses;
-    for (const RigCamera& camera : rig_.cameras()) poses.push_back(camera.T_body_cam);
-    for (const CameraImage& image : set.images) {
-      const double dt = seconds(image.stamp_ns + nanoseconds(rig_.camera(image.camera).time_offset_s) - reference_ns);
-      Eigen::Isometry3d T_reference_image = Eigen::Isometry3d::Identity();
-      T_reference_image.linear() = expSO3(twist.angular * dt);
-      T_reference_image.translation() = twist.linear * dt;
-      poses[image.camera] = T_reference_image * poses[image.camera];
-    }
-    return poses;
-  }
-
   void process(FrameSet* set, std::vector<EgoMotionResult>* results) {
     const std::int64_t stamp_ns = input_.inertialStamp(*set);
     if (jumpedAhead(stamp_ns)) goOnAfterJump(seconds(stamp_ns - motion_->stamp()));
@@ -189,7 +175,7 @@ class EgoMotion::Impl {
     if (anew) tracker_.reset();
     bool estimated = true;
     PosedFrame newest;
-    newest.T_body_cam = cameraPoses(*set, stamp_ns);
+    newest.T_body_cam = cameraPoses(rig_, *set, stamp_ns, motion_->twist());
     newest.frame = tracker_.track(*set, first ? Eigen::Isometry3d::Identity() : motion.T_a_b, newest.T_body_cam);
     newest.frame.stamp_ns = set->stamp_ns;
     stage("tracking");
