@@ -58,6 +58,11 @@ struct FaultRow {
     drift_allowance_deg = allowance_deg;
     return *this;
   }
+  /// The data are wrong throughout: the fault is to be named, the accuracy is not judged.
+  FaultRow& onlyNamed() {
+    accurate = false;
+    return *this;
+  }
   FaultRow& with(const std::string& parameter, const std::string& value) {
     parameters.emplace_back(parameter, value);
     return *this;
@@ -77,6 +82,7 @@ struct FaultRow {
   double stamp_shift_s = 0.0;
   bool stamps_jump = false;
   int odom_epochs = 1;
+  bool accurate = true;
   double drift_factor = 1.5, drift_allowance_m = 0.005, drift_allowance_deg = 0.1;
   std::vector<std::pair<std::string, std::string>> parameters;
   std::string refusal;
