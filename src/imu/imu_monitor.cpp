@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/imu/imu_monitor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -11,11 +12,11 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kSpan = 1.0;            // of data judged at a time [s]
-constexpr double kLargeRate = 2.0;       // a rate that repeats exactly is at the limit above this [rad/s]
-constexpr double kLargeForce = 15.0;     // likewise [m/s^2]
-constexpr double kLeastRateShare = 0.5;  // of the calibrated rate
-constexpr double kLeastShare = 0.02;     // of the samples that makes a fault of single bad ones
+constexpr double kSpan = 1.0;              // of data judged at a time [s]
+constexpr double kLeastLimitRate = 0.2;    // no gyroscope is at its limit below this [rad/s]
+constexpr double kLeastLimitForce = 12.0;  // nor an accelerometer [m/s^2]
+constexpr double kLeastRateShare = 0.5;    // of the calibrated rate
+constexpr double kLeastShare = 0.05;       // of the samples, that repeat the largest value
 constexpr const char* kChannels[] = {"angular velocity x",    "angular velocity y",    "angular velocity z",
                                      "linear acceleration x", "linear acceleration y", "linear acceleration z"};
 
@@ -46,6 +47,7 @@ void ImuMonitor::add(const ImuSample& sample) {
     start_ns_ = sample.stamp_ns;
     samples_ = not_finite_ = repeated_ = 0;
     force_sum_ = 0.0;
+    largest_.setZero();
     at_limit_.setZero();
   }
   ++samples_;
@@ -59,8 +61,10 @@ void ImuMonitor::add(const ImuSample& sample) {
   if (sample.stamp_ns != last_ns_) {
     repeated_ += values == last_;
     for (int i = 0; i < 6; ++i) {
-      const double large = i < 3 ? kLargeRate : kLargeForce;
-      at_limit_[i] += values[i] == last_[i] && std::abs(values[i]) > large;
+      const double magnitude = std::abs(values[i]);
+      if (magnitude > largest_[i]) at_limit_[i] = 0;
+      largest_[i] = std::max(largest_[i], magnitude);
+      at_limit_[i] += values[i] == last_[i] && magnitude == largest_[i];
     }
   }
   last_ = values;
@@ -87,9 +91,9 @@ void ImuMonitor::judge(double duration_s) {
     faults_.push_back(text("IMU: mean acceleration %.2f, expected about %.1f m/s^2: in g?", force, gravity_));
   }
   for (int i = 0; i < 6; ++i) {
-    if (at_limit_[i] > kLeastShare * finite + 1.0) {
-      faults_.push_back(
-          text("IMU: %s stays at %.2f in %d of %d samples: saturated?", kChannels[i], last_[i], at_limit_[i], finite));
+    if (largest_[i] > (i < 3 ? kLeastLimitRate : kLeastLimitForce) && at_limit_[i] > kLeastShare * finite + 1.0) {
+      faults_.push_back(text("IMU: %s stays at %.2f in %d of %d samples: saturated?", kChannels[i], largest_[i],
+                             at_limit_[i], finite));
     }
   }
 }

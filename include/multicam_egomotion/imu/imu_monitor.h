@@ -39,7 +39,8 @@ class ImuMonitor {
   int samples_ = 0, not_finite_ = 0, repeated_ = 0;
   double force_sum_ = 0.0;
   Eigen::Matrix<double, 6, 1> last_ = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<int, 6, 1> at_limit_ = Eigen::Matrix<int, 6, 1>::Zero();  ///< repeated large values, by channel
+  Eigen::Matrix<double, 6, 1> largest_ = Eigen::Matrix<double, 6, 1>::Zero();  ///< magnitude, by channel
+  Eigen::Matrix<int, 6, 1> at_limit_ = Eigen::Matrix<int, 6, 1>::Zero();       ///< how often it repeats itself
 };
 
 }  // namespace multicam_egomotion
