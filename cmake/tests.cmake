@@ -71,7 +71,11 @@ if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
 endif()
 
 if(benchmark_FOUND)
+  # Those of solvers and estimation need Eigen only.
   file(GLOB benchmarks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/benchmark/*_benchmark.cpp)
+  if(MULTICAM_EGOMOTION_CORE_ONLY)
+    list(FILTER benchmarks INCLUDE REGEX "/(solver|ransac)_benchmark\\.cpp$")
+  endif()
   foreach(file ${benchmarks})
     get_filename_component(name ${file} NAME_WE)
     add_executable(${name} EXCLUDE_FROM_ALL ${file})

@@ -5,26 +5,91 @@
 #include <algorithm>
 #include <cmath>
 
-#include "multicam_egomotion/estimation/rig_sampler.h"
+#include "multicam_egomotion/estimation/inlier_weights.h"
+#include "multicam_egomotion/estimation/two_view_normal_equations.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
 namespace {
 
-// Thresholds of the local optimization's rounds, in those of an inlier; it ends when a round gains less than 1 %.
-constexpr double kThresholdFactors[] = {3.0, 1.5, 1.0, 1.0, 1.0};
-constexpr double kWorthwhile = 0.99;
-constexpr int kPolishRounds = 3;
-constexpr double kLeastNoise = 0.05;  // [px]
+using Part = CorrespondenceSet::Part;
 
-// Grouped positions of the correspondences whose squared error is below the threshold.
-std::vector<int> inlierPositions(const std::vector<double>& squared_errors, double squared_threshold) {
-  std::vector<int> positions;
-  for (std::size_t i = 0; i < squared_errors.size(); ++i) {
-    if (squared_errors[i] < squared_threshold) positions.push_back(static_cast<int>(i));
+constexpr double kLeastThreshold = 0.25;  // of the marginalizing score, as a share of the greatest
+// Local optimization: first on the probe with a wide loss, as a minimal model is too crude to have all inliers within
+// the threshold; then on everything.
+constexpr double kProbeWidths[] = {4.0, 2.0};
+constexpr int kFullSteps = 2;
+constexpr int kLastRounds = 3;
+constexpr double kDamping = 1e-3;
+// A model is not scored further when its loss over the probe exceeds that of the best by more standard deviations than
+// chance would give a model as good; the spread of a sum of n losses in [0, 1] is at most sqrt(n) / 2.
+constexpr double kProbeSigmas = 2.0;
+
+struct Model {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+  double score = std::numeric_limits<double>::infinity();
+};
+
+class Consensus {
+ public:
+  Consensus(const CorrespondenceSet& set, const MotionPriors& priors, const RobustEstimatorOptions& options)
+      : set_(set),
+        priors_(priors),
+        options_(options),
+        loss_{options.max_epipolar_error_px * (options.score == Score::kMsac ? 1.0 : kLeastThreshold),
+              options.max_epipolar_error_px},
+        probe_margin_(kProbeSigmas * 0.5 * std::sqrt(set.partSize(Part::kProbe))) {}
+
+  bool contradictsPrior(const Eigen::Matrix3d& R) const {
+    const RotationPrior& prior = priors_.rotation;
+    if (prior.information.isZero(0.0)) return false;
+    const Eigen::Vector3d difference = logSO3(R * prior.R.transpose());
+    return difference.dot(prior.information * difference) > options_.max_rotation_sigmas * options_.max_rotation_sigmas;
   }
-  return positions;
-}
+
+  /// Scores a minimal model; true when it is the best of them.
+  bool improves(Model* model) {
+    const double probe = set_.sumOfLosses(model->R, model->t, loss_, Part::kProbe);
+    if (probe > best_probe_ + probe_margin_) return false;
+    model->score = probe + set_.sumOfLosses(model->R, model->t, loss_, Part::kRest);
+    if (!(model->score < best_minimal_)) return false;
+    best_minimal_ = model->score;
+    best_probe_ = probe;
+    return true;
+  }
+
+  Model optimizeLocally(const Model& minimal) const {
+    Model model = minimal;
+    for (double width : kProbeWidths) {
+      if (!step(width, true, &model)) return minimal;
+    }
+    for (int i = 0; i < kFullSteps; ++i) {
+      if (!step(1.0, false, &model)) return minimal;
+    }
+    model.score = set_.sumOfLosses(model.R, model.t, loss_, Part::kAll);
+    return model.score < minimal.score ? model : minimal;
+  }
+
+ private:
+  bool step(double width, bool probe_only, Model* model) const {
+    const double limit = width * options_.max_epipolar_error_px;
+    const TwoViewNoise noise{{0.5 * limit, limit}, options_.refinement.pixel_sigma * width};
+    const auto equations = linearizeTwoView(set_.blocks(), probe_only, noise, priors_, model->R, model->t);
+    const Eigen::Matrix<double, 6, 1> d = equations.step(kDamping);
+    if (!d.allFinite()) return false;
+    model->R = expSO3(d.tail<3>()) * model->R;
+    model->t += d.head<3>();
+    return true;
+  }
+
+  const CorrespondenceSet& set_;
+  const MotionPriors& priors_;
+  const RobustEstimatorOptions& options_;
+  const RobustLoss loss_;
+  const double probe_margin_;
+  double best_minimal_ = std::numeric_limits<double>::infinity(), best_probe_ = best_minimal_;
+};
 
 // Samples needed to draw one free of outliers with the probability wanted.
 double samplesNeeded(double inlier_share, int sample_size, double success_probability) {
@@ -33,111 +98,81 @@ double samplesNeeded(double inlier_share, int sample_size, double success_probab
   return std::log1p(-success_probability) / std::log1p(-all_inliers);
 }
 
-struct RefinedModel {
-  Eigen::Matrix3d R;
-  Eigen::Vector3d t;
-  double score;
-};
-
-// Local optimization over the inliers of a threshold that narrows to the final one: a minimal model is too crude to
-// have all inliers within it. Returns the number of refinements.
-int refine(const CorrespondenceSet& set, const RotationPrior& prior, const RobustEstimatorOptions& options,
-           RefinedModel* model) {
-  const double squared_threshold = options.max_epipolar_error_px * options.max_epipolar_error_px;
-  std::vector<double> errors;
-  RefinedModel current = *model;
-  int rounds = 0;
-  double last = std::numeric_limits<double>::infinity();
-  for (double factor : kThresholdFactors) {
-    set.squaredSampsonErrors(current.R, current.t, &errors);
-    const std::vector<int> support = inlierPositions(errors, factor * factor * squared_threshold);
-    ++rounds;
-    if (!refineTwoView(set, support, prior, options.refinement, &current.R, &current.t)) break;
-    current.score =
-        set.score(current.R, current.t, squared_threshold, std::numeric_limits<double>::infinity(), &errors);
-    if (current.score < model->score) *model = current;
-    if (factor == 1.0 && current.score > kWorthwhile * last) break;
-    last = current.score;
-  }
-  return rounds;
-}
-
-// Last refinement, with weights and support by the noise that the inliers show instead of the threshold: it is much
-// less, and outliers that lie within the threshold by chance would bend the result.
-void polish(const CorrespondenceSet& set, const RotationPrior& prior, const RobustEstimatorOptions& options,
-            RobustEstimate* best) {
-  const double squared_threshold = options.max_epipolar_error_px * options.max_epipolar_error_px;
-  std::vector<double> errors;
-  for (int round = 0; round < kPolishRounds; ++round) {
-    set.squaredSampsonErrors(best->R, best->t, &errors);
-    std::vector<double> inliers;
-    for (double error : errors) {
-      if (error < squared_threshold) inliers.push_back(error);
+// Last refinement, of which the first round may find the inliers farther away.
+void refineLast(const CorrespondenceSet& set, const MotionPriors& priors, const RobustEstimatorOptions& options,
+                RobustEstimate* result) {
+  const double limit = options.max_epipolar_error_px;
+  TwoViewEstimate estimate;
+  estimate.R = result->R;
+  estimate.t = result->t;
+  CorrespondenceSet::Residuals residuals;
+  std::vector<double> weights;
+  for (int round = 0; round < kLastRounds; ++round) {
+    set.evaluate(estimate.R, estimate.t, limit, &residuals);
+    if (round == 0) {
+      weighInliers(residuals, 0.5 * limit, 2.0 * limit, &weights);
+    } else {
+      weighInliers(residuals, estimate.pixel_sigma, limit, &weights);
     }
-    if (static_cast<int>(inliers.size()) < options.min_inliers) return;
-    std::nth_element(inliers.begin(), inliers.begin() + inliers.size() / 2, inliers.end());
-    const double sigma = 1.4826 * std::sqrt(inliers[inliers.size() / 2]);  // of a Gaussian with that median
-    TwoViewRefinementOptions refinement = options.refinement;
-    refinement.robust_width_px = std::min(refinement.robust_width_px, std::max(sigma, kLeastNoise));
-    const double support = std::min(options.max_epipolar_error_px, 4.0 * refinement.robust_width_px);
-    if (!refineTwoView(set, inlierPositions(errors, support * support), prior, refinement, &best->R, &best->t)) return;
-    ++best->refinements;
+    estimate = refineTwoView(set.weightedBlocks(weights), priors, options.refinement, limit, estimate);
+    if (!estimate.success) return;
   }
+  result->R = estimate.R;
+  result->t = estimate.t;
+  result->covariance = estimate.covariance;
+  result->pixel_sigma = estimate.pixel_sigma;
+  result->scale = scaleObservability(estimate.t, estimate.covariance.topLeftCorner<3, 3>());
 }
 
 }  // namespace
 
 RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, const ModelGenerator& generate,
-                                const RotationPrior& rotation_prior, const RobustEstimatorOptions& options,
-                                std::uint64_t seed) {
-  RobustEstimate best;
-  best.inliers.assign(set.size(), 0);
-  if (set.size() < std::max(sample_size, options.min_inliers)) return best;
+                                const MotionPriors& priors, const RobustEstimatorOptions& options, std::uint64_t seed) {
+  RobustEstimate result;
+  result.inliers.assign(set.size(), 0);
+  if (set.size() < std::max(sample_size, options.min_inliers)) return result;
 
-  const double squared_threshold = options.max_epipolar_error_px * options.max_epipolar_error_px;
-  const double max_rotation_square = options.max_rotation_sigmas * options.max_rotation_sigmas;
-  RigSampler sampler(set, seed);
+  const double limit = options.max_epipolar_error_px;
+  MinimalSampler sampler(set, options.sampling, sample_size, options.max_samples, seed);
+  Consensus consensus(set, priors, options);
+  Model best;
   std::vector<int> sample(sample_size);
   std::vector<RelativePose> models;
-  std::vector<double> errors;
+  CorrespondenceSet::Residuals residuals;
   double needed = options.max_samples;
-  double best_minimal_score = std::numeric_limits<double>::infinity();
-
-  while (best.samples < options.max_samples && (best.samples < options.min_samples || best.samples < needed)) {
-    ++best.samples;
-    if (!sampler.draw(sample_size, sample.data())) break;
+  while (result.samples < options.max_samples && (result.samples < options.min_samples || result.samples < needed)) {
+    ++result.samples;
+    sampler.draw(sample.data());
     generate(sample.data(), &models);
-    for (const RelativePose& model : models) {
-      const Eigen::Vector3d difference = logSO3(model.R * rotation_prior.R.transpose());
-      if (difference.dot(rotation_prior.information * difference) > max_rotation_square) continue;
-      ++best.models;
-      // A minimal model is refined when it is better than the other minimal models were: against a refined one it
-      // could hardly win.
-      const double score = set.score(model.R, model.t, squared_threshold, best_minimal_score, &errors);
-      if (!(score < best_minimal_score)) continue;
-      best_minimal_score = score;
-      RefinedModel refined{model.R, model.t, score};
-      best.refinements += refine(set, rotation_prior, options, &refined);
-      if (!(refined.score < best.score)) continue;
-      best.score = refined.score;
-      best.R = refined.R;
-      best.t = refined.t;
-      best.success = true;
-      set.squaredSampsonErrors(best.R, best.t, &errors);
-      const double inliers = static_cast<double>(inlierPositions(errors, squared_threshold).size());
+    for (const RelativePose& candidate : models) {
+      if (consensus.contradictsPrior(candidate.R)) continue;
+      ++result.models;
+      Model model{candidate.R, candidate.t};
+      if (!consensus.improves(&model)) continue;
+      if (options.local_optimization) {
+        model = consensus.optimizeLocally(model);
+        ++result.refinements;
+      }
+      if (!(model.score < best.score)) continue;
+      best = model;
+      set.evaluate(best.R, best.t, limit, &residuals);
+      const double inliers =
+          std::count_if(residuals.errors.begin(), residuals.errors.end(), [&](double e) { return e < limit; });
       needed = samplesNeeded(inliers / set.size(), sample_size, options.success_probability);
     }
   }
-  if (!best.success) return best;
-  polish(set, rotation_prior, options, &best);
-
-  set.squaredSampsonErrors(best.R, best.t, &errors);
-  for (int position : inlierPositions(errors, squared_threshold)) {
-    best.inliers[set.indexAt(position)] = 1;
-    ++best.inlier_count;
+  if (!std::isfinite(best.score)) return result;
+  result.score = best.score;
+  result.R = best.R;
+  result.t = best.t;
+  if (options.final_refinement) refineLast(set, priors, options, &result);
+  set.evaluate(result.R, result.t, limit, &residuals);
+  for (int i = 0; i < set.size(); ++i) {
+    result.inliers[i] = residuals.errors[i] < limit;
+    result.inlier_count += result.inliers[i];
   }
-  best.success = best.inlier_count >= options.min_inliers;
-  return best;
+  result.success = result.inlier_count >= options.min_inliers;
+  return result;
 }
 
 }  // namespace multicam_egomotion

@@ -3,110 +3,96 @@
 #include "multicam_egomotion/estimation/two_view_refinement.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/estimation/two_view_normal_equations.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
+constexpr double kCoreSigmas = 2.5, kLimitSigmas = 3.5;
+constexpr double kExpectedWeight = 4.0;  // correspondences that the expected noise stands for
+constexpr int kTruncationSteps = 8;
+constexpr double kMeanDistrust = 0.125;  // of the inliers by their parallax
+constexpr double kLeastSigma = 0.02;     // [px]
+// A change of the noise that no longer matters; after so many iterations it stays as it is.
+constexpr double kSteadySigma = 0.02;
+constexpr int kAdaptiveIterations = 8;
+constexpr double kSmallStep = 1e-4;  // squared length in sigmas of a step that no longer matters
+constexpr double kLargestLambda = 1e6;
 
-struct Problem {
-  const CorrespondenceSet& set;
-  const std::vector<int>& inliers;
-  const RotationPrior& prior;
-  const TwoViewRefinementOptions& options;
+TwoViewNoise noiseOf(double sigma, const TwoViewRefinementOptions& options, double max_error_px) {
+  const double limit = std::min(kLimitSigmas * sigma, max_error_px);
+  return {{std::min({kCoreSigmas * sigma, options.robust_width_px, limit}), limit}, sigma};
+}
 
-  // Signed Sampson error [px] of one correspondence and, when asked, its gradient by (d t, d theta) with R <- Exp(d
-  // theta) R.
-  double error(int position, const Eigen::Matrix3d& R, const Eigen::Vector3d& t, Vector6d* gradient) const {
-    const int index = set.indexAt(position);
-    const CorrespondenceSet::CameraPair& pair = set.cameraPairs()[set.pairOf(index)];
-    const RayCorrespondence& rays = set.rays(index);
-    const Eigen::Vector3d center = R * pair.center1;
-    const Eigen::Vector3d baseline = center + t - pair.center2;
-    const Eigen::Vector3d d1 = R * rays.first.direction;
-    const Eigen::Vector3d& d2 = rays.second.direction;
-    const Eigen::Vector3d n2 = baseline.cross(d1);
-    const Eigen::Vector3d n1 = d2.cross(baseline);
-    const double e = d2.dot(n2);
-    const double k1 = set.inverseSquaredScale1(position), k2 = set.inverseSquaredScale2(position);
-    const double inverse = 1.0 / std::sqrt((n2.squaredNorm() - e * e) * k2 + (n1.squaredNorm() - e * e) * k1 + 1e-30);
-    if (gradient) {
-      // Numerator and denominator: with the denominator held, every baseline would seem to fit better the shorter it
-      // is.
-      const double shrink = e * inverse * inverse * inverse;
-      const double numerator = inverse + shrink * e * (k1 + k2);
-      const Eigen::Vector3d by_baseline = numerator * d1.cross(d2) - shrink * (k2 * d1.cross(n2) + k1 * n1.cross(d2));
-      const Eigen::Vector3d by_direction = numerator * d2.cross(baseline) - (shrink * k2) * n2.cross(baseline);
-      gradient->head<3>() = by_baseline;
-      gradient->tail<3>() = center.cross(by_baseline) + d1.cross(by_direction);
-    }
-    return e * inverse;
+// Standard deviation of the normal distribution of which `square` is the variance within ±core: a fixed point.
+double sigmaOfTruncated(double square, double core, double greatest) {
+  double sigma = std::sqrt(square);
+  for (int i = 0; i < kTruncationSteps; ++i) {
+    const double a = core / std::min(sigma, greatest);
+    const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * M_PI);
+    sigma = std::sqrt(square / (1.0 - 2.0 * a * density / std::erf(a / std::sqrt(2.0))));
   }
+  return std::min(sigma, greatest);
+}
 
-  double cost(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) const {
-    const double w2 = options.robust_width_px * options.robust_width_px;
-    double sum = 0.0;
-    for (int position : inliers) {
-      const double e = error(position, R, t, nullptr);
-      sum += 0.5 * w2 * std::log1p(e * e / w2);
-    }
-    const Eigen::Vector3d d = logSO3(R * prior.R.transpose());
-    return sum / (options.pixel_sigma * options.pixel_sigma) + 0.5 * d.dot(prior.information * d);
-  }
-};
+// Standard deviation that the inliers show: a step of a fixed point, since the core follows it.
+double measuredSigma(const TwoViewNormalEquations& equations, const RobustLoss& loss, double expected,
+                     double max_error_px) {
+  const double freedom = std::max(0.0, equations.core_weight - 6.0);
+  const double square = (kExpectedWeight * expected * expected + equations.core_squares) / (kExpectedWeight + freedom);
+  return std::max(sigmaOfTruncated(square, loss.core, 0.5 * max_error_px), kLeastSigma);
+}
 
 }  // namespace
 
-bool refineTwoView(const CorrespondenceSet& set, const std::vector<int>& inliers, const RotationPrior& prior,
-                   const TwoViewRefinementOptions& options, Eigen::Matrix3d* R, Eigen::Vector3d* t) {
-  const Problem problem{set, inliers, prior, options};
-  const double information = 1.0 / (options.pixel_sigma * options.pixel_sigma);
-  const double w2 = options.robust_width_px * options.robust_width_px;
-  Eigen::Matrix3d best_R = *R;
-  Eigen::Vector3d best_t = *t;
-  double best_cost = problem.cost(best_R, best_t);
-  if (!std::isfinite(best_cost)) return false;
+TwoViewEstimate refineTwoView(const RayBlocks<double>& rays, const MotionPriors& priors,
+                              const TwoViewRefinementOptions& options, double max_error_px,
+                              const TwoViewEstimate& start) {
+  TwoViewEstimate estimate;
+  estimate.R = start.R;
+  estimate.t = start.t;
+  TwoViewNoise noise =
+      noiseOf(start.pixel_sigma > 0.0 ? start.pixel_sigma : max_error_px / kLimitSigmas, options, max_error_px);
+  const auto linearize = [&](const Eigen::Matrix3d& at_R, const Eigen::Vector3d& at_t) {
+    return linearizeTwoView(rays, false, noise, priors, at_R, at_t);
+  };
+  TwoViewNormalEquations now = linearize(start.R, start.t);
+  if (!std::isfinite(now.cost)) return estimate;
 
   double lambda = 1e-4;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    Matrix6d H = Matrix6d::Zero();
-    Vector6d b = Vector6d::Zero(), gradient;
-    for (int position : inliers) {
-      const double e = problem.error(position, best_R, best_t, &gradient);
-      const double weight = information / (1.0 + e * e / w2);
-      H.selfadjointView<Eigen::Lower>().rankUpdate(gradient, weight);
-      b -= (weight * e) * gradient;
+  for (int& iteration = estimate.iterations; iteration < options.max_iterations && lambda < kLargestLambda;
+       ++iteration) {
+    const double sigma = measuredSigma(now, noise.loss, options.pixel_sigma, max_error_px);
+    const bool steady = iteration >= kAdaptiveIterations || std::abs(sigma - noise.pixel_sigma) < kSteadySigma * sigma;
+    if (!steady) {
+      noise = noiseOf(sigma, options, max_error_px);
+      now = linearize(estimate.R, estimate.t);
     }
-    H = H.selfadjointView<Eigen::Lower>();
-    const Eigen::Vector3d d = logSO3(best_R * prior.R.transpose());
-    H.bottomRightCorner<3, 3>() += prior.information;
-    b.tail<3>() -= prior.information * d;
-    H.diagonal() *= 1.0 + lambda;
-    H.diagonal().array() += 1e-9;
-    const Vector6d step = H.ldlt().solve(b);
-    if (!step.allFinite()) return false;
-
-    const Eigen::Matrix3d new_R = expSO3(step.tail<3>()) * best_R;
-    const Eigen::Vector3d new_t = best_t + step.head<3>();
-    const double new_cost = problem.cost(new_R, new_t);
-    if (!(new_cost < best_cost)) {
+    const Eigen::Matrix<double, 6, 1> step = now.step(lambda);
+    if (!step.allFinite()) return estimate;
+    if (steady && -step.dot(now.g) < kSmallStep) break;
+    const Eigen::Matrix3d trial_R = expSO3(step.tail<3>()) * estimate.R;
+    const Eigen::Vector3d trial_t = estimate.t + step.head<3>();
+    const TwoViewNormalEquations trial = linearize(trial_R, trial_t);
+    if (!(trial.cost < now.cost)) {
       lambda *= 10.0;
       continue;
     }
-    const bool converged = best_cost - new_cost < 1e-5 * best_cost;
-    best_R = new_R;
-    best_t = new_t;
-    best_cost = new_cost;
+    estimate.R = trial_R;
+    estimate.t = trial_t;
+    now = trial;
     lambda *= 0.1;
-    if (converged) break;
   }
-  *R = Eigen::Quaterniond(best_R).normalized().toRotationMatrix();
-  *t = best_t;
-  return true;
+  estimate.R = Eigen::Quaterniond(estimate.R).normalized().toRotationMatrix();
+  estimate.covariance = now.information.llt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  estimate.pixel_sigma = noise.pixel_sigma;
+  estimate.success = estimate.covariance.allFinite();
+  return estimate;
 }
 
 }  // namespace multicam_egomotion

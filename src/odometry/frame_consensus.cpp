@@ -27,7 +27,8 @@ struct TwoPointTranslation {
     Eigen::Vector3d center1, center2;
     double baseline;  // [m]
   };
-  static std::vector<RelativePose> solve(const std::array<RayCorrespondence, 2>& sample, const Prior& prior) {
+  static std::vector<RelativePose> solve(const std::array<RayCorrespondence, 2>& sample, const Prior& prior,
+                                         const SolverOptions&) {
     Eigen::Vector3d normals[2];
     for (int i = 0; i < 2; ++i) normals[i] = (prior.R * sample[i].first.direction).cross(sample[i].second.direction);
     Eigen::Vector3d b = normals[0].cross(normals[1]);
@@ -101,7 +102,8 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
   const CorrespondenceSet set(matches.entries, centers(previous.T_body_cam), centers(newest.T_body_cam));
 
   // R_a_b Exp(d) transposed is Exp(-d) R_f2_f1, so the covariance is that of the left perturbation.
-  const RotationPrior rotation{R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
+  MotionPriors priors;
+  priors.rotation = {R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
   const Eigen::Vector3d rotation_vector = logSO3(R_f2_f1);
   const double angle_sigma = std::sqrt(motion.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
   RobustEstimate estimated;
@@ -110,17 +112,17 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
     const double baseline = std::max(motion.T_a_b.translation().norm(), kLeastBaseline);
     consensus.solver = "2pt-translation";
     estimated =
-        estimate<TwoPointTranslation>(set, {R_f2_f1, pair.center1, pair.center2, baseline}, rotation, options, seed);
+        estimate<TwoPointTranslation>(set, {R_f2_f1, pair.center1, pair.center2, baseline}, priors, options, seed);
   } else if (solver == "4pt-axis" || (solver == "auto" && rotation_vector.norm() > kAxisSigmas * angle_sigma)) {
     consensus.solver = "4pt-axis";
-    estimated = estimate<FourPointAxis>(set, {rotation_vector}, rotation, options, seed);
+    estimated = estimate<FourPointAxis>(set, {rotation_vector}, priors, options, seed);
   } else {
     consensus.solver = "4pt-vertical";
-    estimated = estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), rotation, options, seed);
+    estimated = estimate<FourPointVertical>(set, verticalPriorFromUp(up, R_f2_f1 * up), priors, options, seed);
     if (angle_sigma > kWideRotation && estimated.success) {
       const Eigen::Matrix3d R = estimated.R;
       const RobustEstimate again =
-          estimate<FourPointVertical>(set, verticalPriorFromUp(up, R * up), rotation, options, seed);
+          estimate<FourPointVertical>(set, verticalPriorFromUp(up, R * up), priors, options, seed);
       if (again.score < estimated.score) estimated = again;
     }
   }

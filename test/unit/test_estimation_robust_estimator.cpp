@@ -101,7 +101,8 @@ TEST(RobustEstimator, AxisSolverWithTheGyroscopesRotation) {
       const CorrespondenceScene scene =
           makeCorrespondenceScene(one.rig, {0.02, -0.04, 0.12}, kTranslation, 200, 0.4, 0.3, seed);
       const Eigen::Matrix3d R_gyro = expSO3(Eigen::Vector3d(3e-4, -4e-4, 2e-4)) * scene.R;
-      const RotationPrior prior{R_gyro, Eigen::Matrix3d::Identity() / (5e-4 * 5e-4)};
+      MotionPriors prior;
+      prior.rotation = {R_gyro, Eigen::Matrix3d::Identity() / (5e-4 * 5e-4)};
       const RobustEstimate found = estimate<Axis>(scene.set(), {logSO3(R_gyro)}, prior, {}, seed);
       good += found.success && rotationError(found, scene) < 2e-3 && directionError(found, scene) < 0.15;
     }
@@ -114,16 +115,19 @@ TEST(RobustEstimator, TheRotationPriorDropsHypothesesBeforeTheyAreScored) {
       makeCorrespondenceScene(surroundShape(), kRotation, kTranslation, 200, 0.4, 0.6, 11);
   const CorrespondenceSet set = scene.set();
   const VerticalPrior vertical = verticalOf(scene, Eigen::Vector3d::Zero());
-  const RotationPrior prior{scene.R, Eigen::Matrix3d::Identity() / (5e-3 * 5e-3)};
-  const RobustEstimate with = estimate<Vertical>(set, vertical, prior, {}, 1);
-  const RobustEstimate without = estimate<Vertical>(set, vertical, {}, {}, 1);
+  MotionPriors prior;
+  prior.rotation = {scene.R, Eigen::Matrix3d::Identity() / (5e-3 * 5e-3)};
+  RobustEstimatorOptions options;
+  options.min_samples = options.max_samples = 2000;
+  const RobustEstimate with = estimate<Vertical>(set, vertical, prior, options, 1);
+  const RobustEstimate without = estimate<Vertical>(set, vertical, {}, options, 1);
   ASSERT_TRUE(with.success);
-  EXPECT_LT(static_cast<double>(with.models) / with.samples, 0.8 * without.models / without.samples);
+  EXPECT_LT(with.models, 0.8 * without.models);
   // A prior that contradicts the images leaves nothing.
-  const RotationPrior wrong{expSO3(Eigen::Vector3d(0.0, 0.0, 0.5)) * scene.R,
-                            Eigen::Matrix3d::Identity() / (5e-3 * 5e-3)};
+  MotionPriors wrong;
+  wrong.rotation = {expSO3(Eigen::Vector3d(0.0, 0.0, 0.5)) * scene.R, prior.rotation.information};
   const RobustEstimate none = estimate<Vertical>(set, vertical, wrong, {}, 1);
-  EXPECT_TRUE(!none.success || logSO3(none.R * wrong.R.transpose()).norm() < 0.05);
+  EXPECT_TRUE(!none.success || logSO3(none.R * wrong.rotation.R.transpose()).norm() < 0.05);
 }
 
 TEST(RobustEstimator, IsDeterministicBySeed) {
@@ -168,6 +172,67 @@ TEST(RobustEstimator, FewSamplesSufficeWithoutOutliers) {
       estimate<Vertical>(scene.set(), verticalOf(scene, Eigen::Vector3d::Zero()), {}, options, 1);
   ASSERT_TRUE(found.success);
   EXPECT_LE(found.samples, 2 * options.min_samples);
+}
+
+TEST(RobustEstimator, EveryScoreAndSamplingSucceeds) {
+  for (const Score score : {Score::kMsac, Score::kMarginalizing}) {
+    for (const Sampling sampling : {Sampling::kUniform, Sampling::kProsac, Sampling::kRigAware}) {
+      RobustEstimatorOptions options;
+      options.score = score;
+      options.sampling = sampling;
+      int good = 0;
+      for (unsigned seed = 1; seed <= 10; ++seed) {
+        CorrespondenceScene scene =
+            makeCorrespondenceScene(surroundShape(), kRotation, kTranslation, 200, 0.4, 0.4, seed);
+        for (std::size_t i = 0; i < scene.entries.size(); ++i) scene.entries[i].quality = !scene.outlier[i];
+        const RobustEstimate found =
+            estimate<Vertical>(scene.set(), verticalOf(scene, Eigen::Vector3d::Zero()), {}, options, seed);
+        good += found.success && rotationError(found, scene) < 0.005 && directionError(found, scene) < 0.1;
+      }
+      EXPECT_GE(good, 9) << static_cast<int>(score) << " " << static_cast<int>(sampling);
+    }
+  }
+}
+
+TEST(RobustEstimator, ProsacNeedsFewerSamplesWhereTheQualityTells) {
+  CorrespondenceScene scene = makeCorrespondenceScene(surroundShape(), kRotation, kTranslation, 200, 0.4, 0.6, 2);
+  for (std::size_t i = 0; i < scene.entries.size(); ++i) scene.entries[i].quality = !scene.outlier[i];
+  const CorrespondenceSet set = scene.set();
+  RobustEstimatorOptions options;
+  options.min_samples = options.max_samples = 10;
+  options.sampling = Sampling::kProsac;
+  const RobustEstimate found = estimate<Vertical>(set, verticalOf(scene, Eigen::Vector3d::Zero()), {}, options, 1);
+  ASSERT_TRUE(found.success);
+  EXPECT_LT(rotationError(found, scene), 0.005);
+}
+
+// The smallest plug-in: it knows the answer, and how it was called.
+struct KnownPose {
+  static constexpr int kSampleSize = 2;
+  struct Prior {
+    RelativePose pose;
+    Eigen::Vector3d center;
+  };
+  static std::vector<RelativePose> solve(const std::array<RayCorrespondence, 2>&, const Prior& prior,
+                                         const SolverOptions& options) {
+    EXPECT_TRUE(options.positive_depths_only);
+    EXPECT_EQ(options.camera_count, 2);
+    EXPECT_EQ(options.camera_centers[1], prior.center);
+    return {prior.pose, {prior.pose.R, -prior.pose.t, true}};
+  }
+};
+
+TEST(RobustEstimator, TakesAnySolverAndPlainRansacKeepsItsModel) {
+  const CorrespondenceScene scene = makeCorrespondenceScene(stereoShape(), kRotation, kTranslation, 100, 0.3, 0.3, 4);
+  const CorrespondenceSet set = scene.set();
+  RobustEstimatorOptions options;
+  options.local_optimization = options.final_refinement = false;
+  const RobustEstimate found = estimate<KnownPose>(set, {{scene.R, scene.t, true}, scene.centers[1]}, {}, options, 1);
+  ASSERT_TRUE(found.success);
+  EXPECT_EQ(found.R, scene.R);
+  EXPECT_EQ(found.t, scene.t);
+  EXPECT_EQ(found.refinements, 0);
+  EXPECT_LE(found.models, 2 * found.samples);
 }
 
 }  // namespace

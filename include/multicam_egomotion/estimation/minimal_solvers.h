@@ -6,25 +6,57 @@
 
 #include "multicam_egomotion/geometry/ray.h"
 #include "multicam_egomotion/solvers/four_point_axis.h"
+#include "multicam_egomotion/solvers/four_point_lee.h"
+#include "multicam_egomotion/solvers/four_point_liu.h"
+#include "multicam_egomotion/solvers/four_point_sweeney.h"
 #include "multicam_egomotion/solvers/four_point_vertical.h"
 
 namespace multicam_egomotion {
 
-/// 4pt-vertical for estimate<Solver>(): the models of a sample that have all its points in front of their rays.
+// The minimal solvers for estimate<Solver>().
+
+/// 4pt-vertical
 struct FourPointVertical {
   static constexpr int kSampleSize = 4;
   using Prior = VerticalPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointVertical(sample, prior, {true});
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFourPointVertical(sample, prior, options);
   }
 };
 
-/// 4pt-axis for estimate<Solver>(), likewise.
+/// 4pt-axis
 struct FourPointAxis {
   static constexpr int kSampleSize = 4;
   using Prior = AxisPrior;
-  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior) {
-    return solveFourPointAxis(sample, prior, {true});
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFourPointAxis(sample, prior, options);
+  }
+};
+
+/// 4pt-lee
+struct FourPointLee {
+  static constexpr int kSampleSize = 4;
+  using Prior = VerticalPrior;
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFourPointLee(sample, prior, options);
+  }
+};
+
+/// 4pt-liu
+struct FourPointLiu {
+  static constexpr int kSampleSize = 4;
+  using Prior = VerticalPrior;
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFourPointLiu(sample, prior, options);
+  }
+};
+
+/// 4pt-sweeney
+struct FourPointSweeney {
+  static constexpr int kSampleSize = 4;
+  using Prior = AxisPrior;
+  static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFourPointSweeney(sample, prior, options);
   }
 };
 

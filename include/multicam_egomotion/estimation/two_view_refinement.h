@@ -3,27 +3,33 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
-#include "multicam_egomotion/estimation/correspondence_set.h"
+#include "multicam_egomotion/estimation/motion_priors.h"
+#include "multicam_egomotion/estimation/ray_blocks.h"
 
 namespace multicam_egomotion {
 
-/// Gaussian knowledge of the rotation R_f2_f1 (gyroscope, or constant rate): R_true = Exp(d) R, d ~ N(0, covariance).
-struct RotationPrior {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< [1/rad^2]; zero: nothing is known
-};
-
 struct TwoViewRefinementOptions {
-  int max_iterations = 8;
-  double pixel_sigma = 0.5;      ///< [px], balances the images against the prior
-  double robust_width_px = 2.0;  ///< Sampson errors beyond this are down-weighted (Cauchy)
+  int max_iterations = 20;
+  double pixel_sigma = 0.5;      ///< image noise expected [px]; counts as much as that of four correspondences
+  double robust_width_px = 2.0;  ///< Sampson errors beyond this, or beyond 2 sigmas measured, are down-weighted
 };
 
-/// Levenberg-Marquardt on the Sampson errors of the correspondences in `inliers` (grouped positions) over rotation and
-/// translation of T_f2_f1; refines `R`, `t` in place. Returns false, leaving both, when the result is not finite.
-bool refineTwoView(const CorrespondenceSet& set, const std::vector<int>& inliers, const RotationPrior& prior,
-                   const TwoViewRefinementOptions& options, Eigen::Matrix3d* R, Eigen::Vector3d* t);
+struct TwoViewEstimate {
+  bool success = false;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< T_f2_f1 of the paper: body t1 into body t2
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();      ///< [m]
+  /// Order (t [m], theta [rad]): t_true = t + dt, R_true = Exp(dtheta) R.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  double pixel_sigma = 0.0;  ///< image noise that the inliers show [px]; 0: not known
+  int iterations = 0;
+};
+
+/// Levenberg-Marquardt on the weighted Sampson errors and the priors, to convergence, from the pose, and the noise
+/// where it is known, of `start`. The loss (RobustLoss) follows the noise that the inliers show, core 2 and limit 3
+/// sigmas, but no error beyond `max_error_px` counts. No success when the result is not finite.
+TwoViewEstimate refineTwoView(const RayBlocks<double>& rays, const MotionPriors& priors,
+                              const TwoViewRefinementOptions& options, double max_error_px,
+                              const TwoViewEstimate& start);
 
 }  // namespace multicam_egomotion

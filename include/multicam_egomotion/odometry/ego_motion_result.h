@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "multicam_egomotion/estimation/scale_observability.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
@@ -14,7 +15,6 @@ namespace multicam_egomotion {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 enum class EgoMotionStatus { kInitializing, kTracking, kCoasting, kLost };
-enum class ScaleState { kNotApplicable, kObservable, kWeak, kUnobservable };
 
 const char* name(EgoMotionStatus status);
 const char* name(ScaleState state);

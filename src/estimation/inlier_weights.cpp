@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "multicam_egomotion/estimation/inlier_weights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr int kBins = 26, kFarthest = -20;  // half octaves of the distance
+constexpr double kCoreSigmas = 2.5;
+constexpr double kSideBegin = 2.0, kSideEnd = 22.0;  // in limits
+constexpr double kUnseen = 0.01;                     // inliers expected at a distance at which no other is
+constexpr double kBent = 2.0;                        // outliers to which the pose may have been bent
+
+constexpr double kMeanDistrust = 0.125;
+constexpr double kFirstParallax = 0.1, kLeastParallax = 1e-8;  // squared [rad^2]
+constexpr int kParallaxSteps = 5;
+
+// Half octaves of the nearness; points without parallax are the farthest.
+int binOf(double nearness) {
+  if (!(nearness > 0.0)) return 1;
+  return std::min(std::max(std::ilogb(nearness * nearness) - kFarthest, 1), kBins);
+}
+
+// Squared parallax s at which the mean of p / (p + s) over squared parallaxes p is kMeanDistrust: a fixed point.
+double trustedParallax(const std::vector<double>& squared_parallaxes) {
+  double scale = kFirstParallax;
+  for (int i = 0; i < kParallaxSteps; ++i) {
+    double sum = 0.0;
+    for (double p : squared_parallaxes) sum += p / (p + scale);
+    const double distrust = std::min(std::max(sum / std::max<std::size_t>(1, squared_parallaxes.size()), 1e-3), 0.9);
+    scale = std::max(scale * distrust / (1.0 - distrust) * (1.0 - kMeanDistrust) / kMeanDistrust, kLeastParallax);
+  }
+  return scale;
+}
+
+}  // namespace
+
+void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, double limit,
+                  std::vector<double>* weights) {
+  const std::vector<double>& errors = residuals.errors;
+  const double core = std::min(kCoreSigmas * sigma, limit);
+  std::array<int, kBins + 2> core_counts{}, side_counts{};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (errors[i] < core) ++core_counts[binOf(residuals.nearness[i])];
+    if (errors[i] > kSideBegin * limit && errors[i] < kSideEnd * limit) ++side_counts[binOf(residuals.nearness[i])];
+  }
+  // Squared error up to which the inliers are denser than the outliers.
+  std::array<double, kBins + 1> largest{};
+  for (int bin = 1; bin <= kBins; ++bin) {
+    const auto window = [bin](const std::array<int, kBins + 2>& counts) {
+      return counts[bin - 1] + counts[bin] + counts[bin + 1];
+    };
+    const double outliers = window(side_counts) / ((kSideEnd - kSideBegin) * limit);  // a pixel
+    const double others = std::max(window(core_counts) - 1.0 - kBent - outliers * core, kUnseen);
+    const double odds = others * std::sqrt(2.0 / M_PI) / (sigma * std::max(outliers, 1e-6));
+    largest[bin] = odds > 1.0 ? std::min(2.0 * sigma * sigma * std::log(odds), limit * limit) : 0.0;
+    if (outliers == 0.0) largest[bin] = limit * limit;
+  }
+  weights->assign(errors.size(), 0.0);
+  std::vector<double> parallaxes;
+  parallaxes.reserve(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!(errors[i] * errors[i] < largest[binOf(residuals.nearness[i])])) continue;
+    (*weights)[i] = 1.0;
+    parallaxes.push_back(residuals.squared_parallaxes[i]);
+  }
+  const double scale = trustedParallax(parallaxes);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    (*weights)[i] *= scale / (scale + residuals.squared_parallaxes[i]);
+  }
+}
+
+}  // namespace multicam_egomotion
