@@ -64,10 +64,12 @@ Variations variations(const double* b, double noise) {
   }
   found.possible = found.certain;
   if (smallest <= noise) {
-    // Each one within the noise takes the sign opposite to the one before.
-    found.possible = 0;
-    bool negative = std::abs(b[0]) <= noise ? !(b[1] < 0) : b[0] < 0;
-    for (int i = 1; i <= kDegree; ++i) {
+    // Each one within the noise takes the sign opposite to the one before; those ahead of all others alternate too.
+    int first = 0;
+    while (first < kDegree && std::abs(b[first]) <= noise) ++first;
+    found.possible = first;
+    bool negative = b[first] < 0;
+    for (int i = first + 1; i <= kDegree; ++i) {
       const bool next = std::abs(b[i]) <= noise ? !negative : b[i] < 0;
       found.possible += next != negative;
       negative = next;
