@@ -21,7 +21,8 @@ constexpr double kWeakestInformation =
 constexpr double kSystematicError = 0.25;
 // Scale error that all matches between cameras have in common, as a share: patches on slanted surfaces and at edges.
 constexpr double kCommonScaleError = 5e-4;
-constexpr double kEvenlySeen = 5.0;  // ratio of the noise along and across up to which all directions count as seen
+constexpr double kEvenlySeen = 5.0;      // ratio of the noise along and across up to which all directions count as seen
+constexpr double kContradiction = 10.0;  // sigmas by which the images' rotation differs from a wrong prior
 constexpr double kUnknownInverseDistance = 100.0;  // sigma that says nothing of a point's distance [1/m]
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
@@ -134,6 +135,14 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
                           : estimate->scale_sigma < kObservableScale ? ScaleState::kObservable
                           : estimate->scale_sigma < kWeakScale       ? ScaleState::kWeak
                                                                      : ScaleState::kUnobservable;
+}
+
+bool contradicted(const MotionSummary& prior, const RelativeMotion& vision) {
+  const Eigen::Matrix3d& R = prior.T_a_b.linear();
+  const Eigen::Vector3d difference = logSO3(vision.T_a_b.linear() * R.transpose());
+  const Eigen::Matrix3d covariance =
+      R * prior.rotation_covariance * R.transpose() + vision.covariance.bottomRightCorner<3, 3>();
+  return difference.dot(covariance.ldlt().solve(difference)) > kContradiction * kContradiction;
 }
 
 PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& solve_options) {
