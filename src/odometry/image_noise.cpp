@@ -11,7 +11,7 @@ namespace {
 constexpr double kGain = 0.1;  // share of a frame's measured noise in the running estimate
 // Share of a patch's own error that stays from frame to frame where nothing moves, and the parallax that changes it
 // [px].
-constexpr double kKeptPatchError = 0.5;
+constexpr double kKeptPatchError = 0.8;
 constexpr double kPatchChangePx = 10.0;
 
 }  // namespace
