@@ -70,6 +70,39 @@ if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
   target_link_libraries(test_camera_model opencv_calib3d)
 endif()
 
+# Examples check what they show.
+file(GLOB examples CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/examples/*.cpp)
+foreach(file ${examples})
+  get_filename_component(name ${file} NAME_WE)
+  add_executable(example_${name} EXCLUDE_FROM_ALL ${file})
+  target_link_libraries(example_${name} multicam_egomotion_solvers)
+  set_target_properties(example_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  add_test(NAME example_${name} COMMAND example_${name})
+  add_dependencies(tests example_${name})
+endforeach()
+
+if(MULTICAM_EGOMOTION_PYTHON)
+  add_test(NAME python_module COMMAND ${PYTHON_EXECUTABLE} -m unittest -v test_python_module
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
+  add_test(NAME example_python COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/examples/relative_pose.py)
+  set_tests_properties(python_module example_python PROPERTIES TIMEOUT 120
+    ENVIRONMENT PYTHONPATH=${CMAKE_BINARY_DIR}/python)
+  add_dependencies(tests multicam_egomotion_python)
+endif()
+
+# A project outside of this one, against an installation in a scratch directory.
+set(consumer ${CMAKE_BINARY_DIR}/test/consumer)
+add_test(NAME consumer_install
+  COMMAND ${CMAKE_COMMAND} --install ${CMAKE_BINARY_DIR} --component solvers --prefix ${consumer}/prefix)
+add_test(NAME consumer_build_and_run
+  COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/test/consumer ${consumer}/build
+    --build-generator ${CMAKE_GENERATOR} --build-noclean --build-options -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_PREFIX_PATH=${consumer}/prefix -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+    -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+    --test-command ${consumer}/build/consumer)
+set_tests_properties(consumer_install PROPERTIES FIXTURES_SETUP consumer TIMEOUT 60)
+set_tests_properties(consumer_build_and_run PROPERTIES FIXTURES_REQUIRED consumer TIMEOUT 300)
+
 if(benchmark_FOUND)
   # Those of solvers and estimation need Eigen only.
   file(GLOB benchmarks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/benchmark/*_benchmark.cpp)
@@ -85,4 +118,10 @@ if(benchmark_FOUND)
     endif()
     add_dependencies(tests ${name})
   endforeach()
+  # Beside ours, where it is installed and its types are laid out as those of this build.
+  find_package(opengv QUIET)
+  if(opengv_FOUND AND MULTICAM_EGOMOTION_EIGEN_ALIGNMENT EQUAL 16)
+    target_sources(solver_benchmark PRIVATE test/benchmark/opengv_solvers.cpp)
+    target_link_libraries(solver_benchmark opengv)
+  endif()
 endif()
