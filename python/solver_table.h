@@ -11,7 +11,8 @@
 namespace multicam_egomotion {
 
 /// Names of the minimal solvers, and their types for estimate<Solver>().
-constexpr const char* kSolverNames[] = {"4pt-vertical", "4pt-axis", "4pt-lee", "4pt-liu", "4pt-sweeney"};
+constexpr const char* kSolverNames[] = {"4pt-vertical", "4pt-axis",    "4pt-lee",
+                                        "4pt-liu",      "4pt-sweeney", "5pt-martyushev"};
 
 /// visit(Solver{}) with the solver of that name; ValueError where there is none.
 template <class Visit>
@@ -21,6 +22,7 @@ auto visitSolver(const std::string& name, const Visit& visit) {
   if (name == "4pt-lee") return visit(FourPointLee{});
   if (name == "4pt-liu") return visit(FourPointLiu{});
   if (name == "4pt-sweeney") return visit(FourPointSweeney{});
+  if (name == "5pt-martyushev") return visit(FivePointMartyushev{});
   std::string expected;
   for (const char* known : kSolverNames) expected += std::string(expected.empty() ? "" : ", ") + known;
   throw pybind11::value_error("solver: found '" + name + "', expected one of " + expected);

@@ -88,6 +88,9 @@ void bindSolvers(py::module_& module) {
       .def(py::init([](const py::object& axis) { return AxisPrior{vectorArgument("axis", axis)}; }), py::arg("axis"),
            "axis (3,): the same vector in the body at t1 and at t2; length and sign do not matter.");
 
+  py::class_<AnglePrior>(module, "AnglePrior", "The rotation angle of R.")
+      .def(py::init([](double angle) { return AnglePrior{angle}; }), py::arg("angle"), "angle [rad], of any sign.");
+
   py::class_<Solutions>(module, "Solutions", "All real solutions of a minimal sample.")
       .def_readonly("R", &Solutions::R, "(k, 3, 3), R_f2_f1")
       .def_readonly("t", &Solutions::t, "(k, 3) [m]")
@@ -103,8 +106,10 @@ void bindSolvers(py::module_& module) {
              py::arg("camera_centers") = py::none(),
              R"(Solutions of one minimal sample.
 
-solver: one of SOLVERS. 4pt-vertical, 4pt-lee and 4pt-liu take a VerticalPrior, 4pt-axis and 4pt-sweeney an AxisPrior.
-rays1, rays2 (4, 6): Pluecker lines in the body at t1 and at t2. cameras1, cameras2 (4,): camera indices.
+solver: one of SOLVERS. 4pt-vertical, 4pt-lee and 4pt-liu take a VerticalPrior, 4pt-axis and 4pt-sweeney an AxisPrior,
+5pt-martyushev an AnglePrior.
+rays1, rays2 (4, 6): Pluecker lines in the body at t1 and at t2; (5, 6) for 5pt-martyushev. cameras1, cameras2 (4,) or
+(5,): camera indices.
 positive_depths_only: drop poses that put a point behind one of its rays; camera_centers (cameras, 3) [m] makes that exact.
 A sample that determines no pose is no error: it has a status and no solutions.)");
 }
