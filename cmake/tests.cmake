@@ -33,7 +33,20 @@ function(add_style_check name)
   set_tests_properties(style_${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 120)
 endfunction()
 
+# A project outside of this one that uses the solver library, built and run.
+function(add_consumer_test name)
+  set(directory ${CMAKE_BINARY_DIR}/test/${name})
+  add_test(NAME ${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/test/consumer ${directory}
+      --build-generator ${CMAKE_GENERATOR} --build-noclean --build-options -DCMAKE_BUILD_TYPE=Release
+      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} ${ARGN}
+      --test-command ${directory}/consumer)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()
+
 if(MULTICAM_EGOMOTION_ROS)
+  add_consumer_test(consumer_catkin -Dmulticam_egomotion_DIR=${CATKIN_DEVEL_PREFIX}/share/multicam_egomotion/cmake)
+
   # The Python tools read and write bags. unittest says "OK (skipped=...)" only where nothing failed.
   file(GLOB script_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_scripts_*.py)
   foreach(file ${script_tests})
@@ -90,18 +103,12 @@ if(MULTICAM_EGOMOTION_PYTHON)
   add_dependencies(tests multicam_egomotion_python)
 endif()
 
-# A project outside of this one, against an installation in a scratch directory.
-set(consumer ${CMAKE_BINARY_DIR}/test/consumer)
-add_test(NAME consumer_install
-  COMMAND ${CMAKE_COMMAND} --install ${CMAKE_BINARY_DIR} --component solvers --prefix ${consumer}/prefix)
-add_test(NAME consumer_build_and_run
-  COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/test/consumer ${consumer}/build
-    --build-generator ${CMAKE_GENERATOR} --build-noclean --build-options -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_PREFIX_PATH=${consumer}/prefix -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-    -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
-    --test-command ${consumer}/build/consumer)
-set_tests_properties(consumer_install PROPERTIES FIXTURES_SETUP consumer TIMEOUT 60)
-set_tests_properties(consumer_build_and_run PROPERTIES FIXTURES_REQUIRED consumer TIMEOUT 300)
+# The consumer project against an installation in a scratch directory.
+set(prefix ${CMAKE_BINARY_DIR}/test/prefix)
+add_test(NAME install_solvers COMMAND ${CMAKE_COMMAND} --install ${CMAKE_BINARY_DIR} --component solvers --prefix ${prefix})
+add_consumer_test(consumer_install -DCMAKE_PREFIX_PATH=${prefix})
+set_tests_properties(install_solvers PROPERTIES FIXTURES_SETUP installed TIMEOUT 60)
+set_tests_properties(consumer_install PROPERTIES FIXTURES_REQUIRED installed)
 
 if(benchmark_FOUND)
   # Those of solvers and estimation need Eigen only.

@@ -16,14 +16,20 @@ namespace {
 
 namespace py = pybind11;
 
-RobustEstimate estimateSet(const std::string& solver, const CorrespondenceSet& set, const py::object& prior,
-                           const MotionPriors& priors, const RobustEstimatorOptions& options, std::uint64_t seed) {
-  return visitSolver(solver, [&](auto type) {
+// `indices`: which of the `size` correspondences of the caller those of the set are; the others are no inliers.
+RobustEstimate estimateSet(const std::string& solver, const CorrespondenceSet& set, const std::vector<int>& indices,
+                           std::size_t size, const py::object& prior, const MotionPriors& priors,
+                           const RobustEstimatorOptions& options, std::uint64_t seed) {
+  RobustEstimate result = visitSolver(solver, [&](auto type) {
     using Solver = decltype(type);
     const auto& known = priorOf<typename Solver::Prior>(solver, prior);
     const py::gil_scoped_release release;
     return estimate<Solver>(set, known, priors, options, seed);
   });
+  std::vector<char> inliers(size, 0);
+  for (std::size_t i = 0; i < indices.size(); ++i) inliers[indices[i]] = result.inliers[i];
+  result.inliers = inliers;
+  return result;
 }
 
 RobustEstimate estimateFromRays(const std::string& solver, const py::object& rays1, const py::object& rays2,
@@ -39,13 +45,18 @@ RobustEstimate estimateFromRays(const std::string& solver, const py::object& ray
   const std::vector<double> scales = valuesArgument("pixels_per_radian", pixels_per_radian, size);
   const std::vector<double> qualities = valuesArgument("quality", quality, size);
   std::vector<CorrespondenceSet::Entry> entries;
+  std::vector<int> indices;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(scales[i] > 0.0)) {
       throw py::value_error("pixels_per_radian: found " + std::to_string(scales[i]) + ", expected a positive number");
     }
+    const Ray &first = rays[i].first, &second = rays[i].second;
+    if (!first.direction.allFinite() || !second.direction.allFinite()) continue;
     entries.push_back({rays[i], scales[i], scales[i], qualities[i]});
+    indices.push_back(static_cast<int>(i));
   }
-  return estimateSet(solver, CorrespondenceSet(entries, centers, centers), prior, priors, options, seed);
+  const CorrespondenceSet set(entries, centers, centers);
+  return estimateSet(solver, set, indices, rays.size(), prior, priors, options, seed);
 }
 
 RobustEstimate estimateFromPixels(const std::string& solver, const CameraRig& rig, const py::object& cameras1,
@@ -61,11 +72,7 @@ RobustEstimate estimateFromPixels(const std::string& solver, const CameraRig& ri
     pixels.push_back({c1[i], first.row(i).transpose(), c2[i], second.row(i).transpose(), qualities[i]});
   }
   const PixelCorrespondenceSet all = correspondencesFromPixels(rig, pixels);
-  RobustEstimate result = estimateSet(solver, all.set, prior, priors, options, seed);
-  std::vector<char> inliers(pixels.size(), 0);
-  for (std::size_t i = 0; i < all.indices.size(); ++i) inliers[all.indices[i]] = result.inliers[i];
-  result.inliers = inliers;
-  return result;
+  return estimateSet(solver, all.set, all.indices, pixels.size(), prior, priors, options, seed);
 }
 
 double informationOf(const char* name, double sigma) {
@@ -210,7 +217,7 @@ void bindEstimator(py::module_& module) {
 
 solver: one of SOLVERS, prior as for solve(). rays1, rays2 (n, 6), cameras1, cameras2 (n,) or one index.
 camera_centers (cameras, 3) [m]. pixels_per_radian (n,) or one number: image scale, about the focal length [px].
-quality (n,): for Sampling.PROSAC, the better the higher. Deterministic by seed. What the solver is told by `prior` holds
+quality (n,): for Sampling.PROSAC, the better the higher. Rays that are NaN are no inliers. Deterministic by seed. What the solver is told by `prior` holds
 for the hypotheses; only `priors` (MotionPriors) enter the refinement.)");
   module.def("estimate_from_pixels", &estimateFromPixels, py::arg("solver"), py::arg("rig"), py::arg("cameras1"),
              py::arg("pixels1"), py::arg("cameras2"), py::arg("pixels2"), py::arg("prior"), py::kw_only(),

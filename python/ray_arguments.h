@@ -22,7 +22,8 @@ inline std::vector<RayCorrespondence> raysArgument(const pybind11::handle& rays1
   std::vector<RayCorrespondence> result(first.rows());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const auto line = [i](const Rows<6>& rows) {
-      return Ray{rows.row(i).head<3>().transpose(), rows.row(i).tail<3>().transpose()};
+      const double length = rows.row(i).head<3>().norm();
+      return Ray{rows.row(i).head<3>().transpose() / length, rows.row(i).tail<3>().transpose() / length};
     };
     result[i] = {line(first), line(second), c1[i], c2[i]};
   }

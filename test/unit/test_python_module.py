@@ -88,6 +88,15 @@ class SolversTest(unittest.TestCase):
             self.assertLess(np.abs(front.R - scene.R).max(axis=(1, 2)).min(), 1e-9)
         self.assertGreater(dropped, 0)
 
+    def test_the_length_of_a_ray_does_not_matter(self):
+        scene = Scene(4, 2)
+        unit = mes.solve("4pt-vertical", *scene.sample(), scene.vertical)
+        scene.rays1 *= 3.0
+        longer = mes.solve("4pt-vertical", *scene.sample(), scene.vertical)
+        np.testing.assert_allclose(longer.t, unit.t, atol=1e-9)
+        scene.rays1[1] = 0.0
+        self.assertEqual(mes.solve("4pt-vertical", *scene.sample(), scene.vertical).status, "invalid_input")
+
     def test_one_camera_pair_is_central(self):
         scene = Scene(4, 1)
         rays1 = mes.rays_from_bearings(scene.rays1[:, :3], np.tile(CENTERS[0], (4, 1)))
@@ -134,7 +143,12 @@ class EstimatorTest(unittest.TestCase):
                                          scene.pixels2, scene.vertical)
         self.assertFalse(found.inliers[7])
         self.assertEqual(found.inlier_count, 59)
-        self.assertTrue(np.isnan(mes.rays_from_pixels(rig(), 0, scene.pixels1[7:8])).all())
+        rays1 = mes.rays_from_pixels(rig(), scene.cameras1, scene.pixels1)
+        self.assertTrue(np.isnan(rays1[7]).all())
+        found = mes.estimate("4pt-vertical", rays1, scene.rays2, scene.cameras1, scene.cameras2, CENTERS,
+                             scene.vertical, pixels_per_radian=FOCAL)
+        self.assertFalse(found.inliers[7])
+        self.assertEqual(found.inlier_count, 59)
 
     def test_options_and_priors(self):
         scene = Scene(100, 6)
