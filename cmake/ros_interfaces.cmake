@@ -8,4 +8,5 @@ catkin_package(
   LIBRARIES multicam_egomotion_solvers multicam_egomotion_core multicam_egomotion_ros
   CATKIN_DEPENDS cv_bridge diagnostic_updater geometry_msgs image_transport message_runtime nav_msgs nodelet pluginlib
     rosbag roscpp sensor_msgs std_msgs std_srvs tf2 tf2_eigen tf2_msgs tf2_ros
-  DEPENDS EIGEN3 OpenCV)
+  DEPENDS EIGEN3 OpenCV
+  CFG_EXTRAS multicam_egomotion-solvers.cmake)
