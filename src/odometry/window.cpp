@@ -8,14 +8,18 @@
 #include <limits>
 
 #include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/odometry/landmark_distance.h"
 #include "multicam_egomotion/odometry/window_marginals.h"
 
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kUsualInverseDistance = 0.3;  // of points whose distance is not seen [1/m]
-constexpr double kDoubtedRotation = 0.35;      // sigma of a prior that the images contradict [rad]
-constexpr int kMinLandmarks = 6;  // tracks that the newest frame shares with older ones, below which it fails
+constexpr double kDoubtedRotation = 0.35;  // sigma of a prior that the images contradict [rad]
+constexpr double kMovingSigmas = 5.0;      // error of a track at a pose found without it
+constexpr int kManyKnown = 60;             // landmarks that do without newcomers
+constexpr int kFramesOfNewcomers = 3;
+constexpr double kRestParallax = 0.5;  // between two frames [px]
+constexpr int kMinLandmarks = 6;       // tracks that the newest frame shares with older ones, below which it fails
 
 BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
 
@@ -61,43 +65,23 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
     observation.bearing = T.linear() * feature.bearing;
     observation.center = T.translation();
     observation.to_pixel = feature.to_pixel * T.linear().transpose();
-    BundleLandmark& landmark = landmarks_[feature.track];
+    Landmark& landmark = landmarks_[feature.track];
     if (landmark.observations.empty()) {
       landmark.origin = pose.p + pose.R * observation.center;
       landmark.direction = pose.R * observation.bearing;
       landmark.inverse_distance = 0.0;
     }
+    landmark.frames += landmark.observations.empty() || landmark.observations.back().pose != newest;
     landmark.observations.push_back(observation);
   }
 }
 
-// Distance of a landmark from its other views by a scan in inverse distance, refined by the joint optimization later;
-// where the views do not tell, a far one.
-void Window::initializeLandmark(BundleLandmark* landmark) const {
-  double best_cost = std::numeric_limits<double>::infinity(), best = 0.0;
-  for (int k = 0; k <= 24; ++k) {
-    const double inverse_distance = k == 0 ? 0.0 : 0.002 * std::pow(1.35, k - 1);  // 0, then 1/500 m to about 1/0.5 m
-    double cost = std::pow(inverse_distance / kUsualInverseDistance, 2);
-    for (const BundleObservation& observation : landmark->observations) {
-      const BundlePose& pose = states_[observation.pose].pose;
-      const Eigen::Vector3d x =
-          pose.R.transpose() * (landmark->direction + inverse_distance * (landmark->origin - pose.p)) -
-          inverse_distance * observation.center;
-      const double depth = observation.bearing.dot(x);
-      const double error = depth > 1e-6 ? (observation.to_pixel * x).norm() / (depth * noise_.pixelSigma()) : 1e3;
-      cost += std::min(error * error, 1e6);
-    }
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = inverse_distance;
-    }
-  }
-  landmark->inverse_distance = best;
-}
-
 void Window::initializeLandmarks() {
+  std::vector<BundlePose> poses;
+  for (const State& state : states_) poses.push_back(state.pose);
   for (auto& [track, landmark] : landmarks_) {
-    if (landmark.inverse_distance == 0.0 && landmark.observations.size() >= 2) initializeLandmark(&landmark);
+    if (landmark.inverse_distance != 0.0 || landmark.observations.size() < 2) continue;
+    landmark.inverse_distance = findInverseDistance(landmark, poses, noise_.pixelSigma());
   }
 }
 
@@ -118,6 +102,8 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
   }
   for (const auto& [track, landmark] : landmarks_) {
     if (landmark.observations.size() < 2) continue;
+    const bool newcomer = landmark.frames < kFramesOfNewcomers && !states_[landmark.observations.front().pose].keyframe;
+    if (newcomers_wait_ && newcomer) continue;
     tracks->push_back(track);
     bundle.landmarks.push_back(landmark);
   }
@@ -189,10 +175,58 @@ WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::I
     }
   }
   states_.back().pose = best;
+  newcomers_wait_ = seemsAtRest();
   initializeLandmarks();
+  if (newcomers_wait_) dropMoving(&estimate);
 
   optimize(&estimate);
   return estimate;
+}
+
+// The known landmarks say that the body has hardly moved.
+bool Window::seemsAtRest() const {
+  const BundlePose& previous = states_[states_.size() - 2].pose;
+  const BundlePose& newest = states_.back().pose;
+  std::vector<double> parallax;
+  int known = 0;
+  for (const auto& [track, landmark] : landmarks_) {
+    if (landmark.inverse_distance == 0.0 || !seenInNewest(landmark)) continue;
+    ++known;
+    if (errorInNewest(landmark) > options_.outlier_sigmas) continue;
+    const BundleObservation& view = landmark.observations.back();
+    const Eigen::Vector3d moved =
+        newest.R.transpose() * (previous.p + previous.R * view.center - newest.p) - view.center;
+    parallax.push_back((view.to_pixel * moved).norm() * landmark.inverse_distance);
+  }
+  if (static_cast<int>(parallax.size()) < std::max(kManyKnown, known / 2)) return false;
+  const auto middle = parallax.begin() + parallax.size() / 2;
+  std::nth_element(parallax.begin(), middle, parallax.end());
+  return *middle < kRestParallax;
+}
+
+// Tracks of a moving object that passes along the epipolar lines fit a motion of the body that is not, as long as their
+// distances are free: they are judged by the pose that the known landmarks give.
+void Window::dropMoving(WindowEstimate* estimate) {
+  for (auto it = landmarks_.begin(); it != landmarks_.end();) {
+    const bool moving =
+        it->second.observations.size() >= 2 && seenInNewest(it->second) && errorInNewest(it->second) > kMovingSigmas;
+    if (moving) estimate->outliers.push_back(it->first);
+    it = moving ? landmarks_.erase(it) : std::next(it);
+  }
+}
+
+bool Window::seenInNewest(const BundleLandmark& landmark) const {
+  return landmark.observations.back().pose == static_cast<int>(states_.size()) - 1;
+}
+
+double Window::errorInNewest(const BundleLandmark& landmark) const {
+  BundleAdjustment bundle;
+  bundle.pixel_sigma = noise_.pixelSigma();
+  bundle.poses = {states_.back().pose};
+  BundleObservation view = landmark.observations.back();
+  view.pose = 0;
+  const double error = bundle.normalizedError(landmark, view);
+  return error < 0.0 ? std::numeric_limits<double>::infinity() : error;
 }
 
 void Window::optimize(WindowEstimate* estimate) {
@@ -249,7 +283,7 @@ void Window::classify(WindowEstimate* estimate) {
   const int newest = static_cast<int>(states_.size()) - 1;
   for (auto it = landmarks_.begin(); it != landmarks_.end();) {
     BundleLandmark& landmark = it->second;
-    bool in_newest = false, bad = false;
+    bool in_newest = false, bad = landmark.inverse_distance * options_.min_distance > 1.0;
     for (const BundleObservation& observation : landmark.observations) {
       in_newest = in_newest || observation.pose == newest;
       if (landmark.observations.size() < 2) continue;

@@ -103,6 +103,7 @@ void visitParameters(Parameters& p, Visitor& v) {
   v("window/min_pixel_sigma", w.min_pixel_sigma, 0.001, 100);
   v("window/max_pixel_sigma", w.max_pixel_sigma, 0.001, 100);
   v("window/outlier_sigmas", w.outlier_sigmas, 1, 100);
+  v("window/min_distance", w.min_distance, 0, 1000);
   v("window/bundle/max_iterations", w.bundle.max_iterations, 1, 1000);
   v("window/bundle/relative_decrease", w.bundle.relative_decrease, 0, 1);
   v("window/bundle/inverse_distance_sigma", w.bundle.inverse_distance_sigma, 0.01, 1000);

@@ -23,6 +23,7 @@ struct WindowOptions {
   double min_pixel_sigma = 0.1;        ///< [px]
   double max_pixel_sigma = 2.0;        ///< [px]
   double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
+  double min_distance = 0.3;           ///< what seems to be nearer is a moving object [m]
   BundleOptions bundle;
 };
 
@@ -79,10 +80,17 @@ class Window {
     bool keyframe = false;
   };
 
+  struct Landmark : BundleLandmark {
+    int frames = 0;  ///< that have seen it
+  };
+
   void addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
   void initializeLandmarks();
-  void initializeLandmark(BundleLandmark* landmark) const;
   double alignNewest(BundlePose* pose) const;
+  bool seemsAtRest() const;
+  void dropMoving(WindowEstimate* estimate);
+  bool seenInNewest(const BundleLandmark& landmark) const;
+  double errorInNewest(const BundleLandmark& landmark) const;
   void optimize(WindowEstimate* estimate);
   bool solve(WindowEstimate* estimate);
   void classify(WindowEstimate* estimate);
@@ -93,8 +101,9 @@ class Window {
 
   WindowOptions options_;
   ImageNoise noise_;
-  std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
-  std::map<TrackId, BundleLandmark> landmarks_;
+  bool newcomers_wait_ = false;  ///< tracks of few frames, none a keyframe, have no say in the pose
+  std::vector<State> states_;    ///< keyframes, oldest first; then the previous frame if it is none, then the newest
+  std::map<TrackId, Landmark> landmarks_;
   PosePrior prior_;
   /// Pose where the window started and its covariance, which stays outside: with a weak prior the small errors of
   /// linearization that marginalization leaves would move the whole window.
