@@ -112,6 +112,14 @@ add_consumer_test(consumer_install -DCMAKE_PREFIX_PATH=${prefix})
 set_tests_properties(install_solvers PROPERTIES FIXTURES_SETUP installed TIMEOUT 60)
 set_tests_properties(consumer_install PROPERTIES FIXTURES_REQUIRED installed)
 
+# A long run, by hand or by test_long.sh.
+if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
+  add_executable(loop_soak EXCLUDE_FROM_ALL test/soak/loop_soak.cpp)
+  target_link_libraries(loop_soak multicam_egomotion_simulator)
+  set_target_properties(loop_soak PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  add_dependencies(tests loop_soak)
+endif()
+
 if(benchmark_FOUND)
   # Those of solvers and estimation need Eigen only.
   file(GLOB benchmarks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/benchmark/*_benchmark.cpp)

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs with apt what building, testing and the demo need and what is missing; does nothing when all is there.
-# Debian 12 has ROS 1 in its own archive; on Ubuntu 20.04, ROS Noetic's packages are used (/opt/ros/noetic).
+# setup.sh [PACKAGE ...]: installs with apt what building, testing and the demo need, and the packages named, as far as
+# it is missing; does nothing when all is there. Debian 12 has ROS 1 in its own archive; on Ubuntu 20.04, ROS Noetic's
+# packages are used (/opt/ros/noetic).
 set -euo pipefail
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
@@ -34,6 +35,8 @@ else
     rviz topic-tools
   )
 fi
+
+packages+=("$@")
 
 as_root() {
   if [[ $(id -u) -eq 0 ]]; then

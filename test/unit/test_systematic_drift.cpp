@@ -11,6 +11,7 @@
 #include "ego_motion_run.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/systematic_drift.h"
+#include "scaled_rig.h"
 #include "simulator/simulator.h"
 
 namespace multicam_egomotion {
@@ -44,23 +45,13 @@ TEST(SystematicDrift, WhatTheTiltDidBeforeItWasKnownStays) {
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6d>(drift.covariance()).eigenvalues()[0], -1e-12);
 }
 
-// Half the pixels along each side, which renders four times as fast.
-Scenario halved(Scenario scenario) {
-  std::vector<RigCamera> cameras = scenario.rig.cameras();
-  for (RigCamera& camera : cameras) {
-    const CameraModel& full = camera.model;
-    camera.model = CameraModel(full.width() / 2, full.height() / 2, full.fx() / 2, full.fy() / 2, full.cx() / 2 - 0.25,
-                               full.cy() / 2 - 0.25, full.distortion(), full.coefficients());
-  }
-  scenario.rig = CameraRig(cameras);
-  return scenario;
-}
-
 // Mean of the accumulated position's NEES per degree of freedom from the first second on.
 double accumulatedNees(const std::string& name, double seconds) {
   SimulationOptions options;
   options.duration_s = seconds;
-  const Simulator simulator(halved(makeScenario(name, options)));
+  Scenario scenario = makeScenario(name, options);
+  scenario.rig = scaledRig(scenario.rig, 0.5);  // which renders four times as fast
+  const Simulator simulator(scenario);
   EgoMotion odometry(simulator.scenario().rig, simulator.scenario().imu, {});
   Recording recording;
   recording.frames = simulator.frames();

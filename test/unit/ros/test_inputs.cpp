@@ -80,6 +80,11 @@ TEST(ImageConversion, FaultsAreNamed) {
   image.step = 3;
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
   image = gradient();
+  image.encoding = "mono16";
+  image.width = 2;
+  image.step = 5;
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  image = gradient();
   image.encoding = "holographic";
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
   EXPECT_THROW(greyPixels(sensor_msgs::Image()), std::invalid_argument);
