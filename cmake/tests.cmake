@@ -16,6 +16,8 @@ function(add_unit_test name)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${name}.cpp)
   add_executable(${name} EXCLUDE_FROM_ALL ${source})
   target_link_libraries(${name} ${ARGN} GTest::GTest GTest::Main)
+  precompile_headers(unit_tests ${name} <algorithm> <cmath> <iostream> <map> <random> <string> <vector> <Eigen/Cholesky>
+    <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/SVD> <gtest/gtest.h>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
   file(STRINGS ${source} shared_set_up REGEX "SetUpTestSuite")
   if(shared_set_up)

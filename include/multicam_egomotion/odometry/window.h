@@ -9,6 +9,7 @@
 
 #include "multicam_egomotion/estimation/bundle_adjustment.h"
 #include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/odometry/image_noise.h"
 #include "multicam_egomotion/odometry/motion_summary.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
@@ -68,7 +69,7 @@ class Window {
 
   /// Triangulated points in odom with a distance known to better than 20 % [m].
   std::vector<Eigen::Vector3d> points() const;
-  double pixelSigma() const { return pixel_sigma_; }
+  double pixelSigma() const { return noise_.pixelSigma(); }
 
  private:
   struct State {
@@ -83,7 +84,7 @@ class Window {
   void initializeLandmark(BundleLandmark* landmark) const;
   double alignNewest(BundlePose* pose) const;
   void optimize(WindowEstimate* estimate);
-  void measureNoise(const BundleAdjustment& bundle, const BundleSummary& summary);
+  bool solve(WindowEstimate* estimate);
   void classify(WindowEstimate* estimate);
   bool wantsKeyframe(WindowEstimate* estimate) const;
   void dropState(int index);
@@ -91,11 +92,7 @@ class Window {
   BundleAdjustment makeBundle(std::vector<TrackId>* tracks) const;
 
   WindowOptions options_;
-  double pixel_sigma_;
-  /// Share of pixel_sigma_'s variance that counts in the motion between two frames: much of a tracked patch's error is
-  /// the same in both and cancels, and pixel_sigma_ has a floor for what calibration leaves.
-  double white_share_ = 1.0;
-  int noise_measurements_ = 0;
+  ImageNoise noise_;
   std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
   std::map<TrackId, BundleLandmark> landmarks_;
   PosePrior prior_;
