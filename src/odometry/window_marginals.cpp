@@ -19,8 +19,8 @@ constexpr double kWeakestInformation =
 
 // Calibration and tracking leave errors that do not average out over a window; scale is not seen through less [px].
 constexpr double kSystematicError = 0.25;
-// What all tracks have in common: error of the scale as a share (patches on slanted surfaces and at edges, the baseline)
-// and of the direction (mounting of the cameras) [rad].
+// What all tracks have in common: error of the scale as a share (patches on slanted surfaces and at edges, the
+// baseline) and of the direction (mounting of the cameras) [rad].
 constexpr double kCommonScaleError = 8e-4;
 constexpr double kCommonDirectionError = 2e-4;
 constexpr double kEvenlySeen = 5.0;      // ratio of the noise along and across up to which all directions count as seen
