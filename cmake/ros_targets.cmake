@@ -12,6 +12,7 @@ add_library(multicam_egomotion_nodelet src/ros/nodelet/ego_motion_nodelet.cpp)
 target_link_libraries(multicam_egomotion_nodelet multicam_egomotion_ros)
 
 add_executable(egomotion_node src/tools/egomotion_node.cpp)
+target_include_directories(egomotion_node PRIVATE src/tools)
 target_link_libraries(egomotion_node multicam_egomotion_ros)
 
 layer_sources(bag_runner_sources tools/bag_runner)
