@@ -58,6 +58,7 @@ void EgoMotionRos::start(const RigSetup& setup) {
   recent_images_ = std::make_unique<RecentImages>(setup.rig.size());
   diagnostics_->health().state = Health::State::kRunning;
   diagnostics_->health().message.clear();
+  last_frame_ = TopicWatch::Clock::now();
   for (const sensor_msgs::ImuConstPtr& sample : early_imu_) process(*sample);
   early_imu_.clear();
   ROS_INFO("%s: %d cameras, body frame %s", private_node_.getNamespace().c_str(), setup.rig.size(),
@@ -106,6 +107,7 @@ void EgoMotionRos::process(const ImageInput& input) {
 }
 
 void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
+  if (!results.empty()) last_frame_ = TopicWatch::Clock::now();
   if (paused_) return;
   for (const EgoMotionResult& result : results) {
     publishers_->publish(result, odometry_->rig(), *recent_images_);
@@ -150,7 +152,7 @@ void EgoMotionRos::warn() {
     std::string silent;
     for (const std::string& topic : health.silent_topics) silent += (silent.empty() ? "" : ", ") + topic;
     lines.push_back("no data on " + silent);
-  } else if (lines.empty() && !waiting && !health.paused && health.rate_hz == 0.0) {
+  } else if (lines.empty() && !waiting && !health.paused && now - last_frame_ >= kWarningPeriod) {
     std::ostringstream text;
     text << "no new frame, although data arrive: " << health.counters.rejected_images << " images rejected, "
          << health.undecodable_images << " not decodable, " << health.counters.late_images << " late; "

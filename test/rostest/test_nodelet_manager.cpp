@@ -11,6 +11,7 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <cstdlib>
 #include <functional>
 #include <pluginlib/class_loader.hpp>
 
@@ -39,6 +40,12 @@ struct Instance {
   EgoMotion::ConstPtr last_motion;
   std::vector<ros::Subscriber> subscribers;
 };
+
+/// More processes want to run than there are processor cores.
+bool starved() {
+  double load = 0.0;
+  return getloadavg(&load, 1) == 1 && load > std::thread::hardware_concurrency();
+}
 
 class NodeletManager : public ::testing::Test {
  protected:
@@ -93,9 +100,8 @@ TEST_F(NodeletManager, ImagesReachTheWorkerUncopied) {
   for (const auto& [thread, images] : after) {
     std::printf("%d images were last held by thread %s\n", images - before[thread], thread.c_str());
   }
-  // The thread of a callback may be preempted while it still holds an image; a copy would leave all to the camera.
-  EXPECT_GE(after["egomotion"] - before["egomotion"], 10);
-  EXPECT_LE(after["camera"] - before["camera"], 5);
+  // Any thread may be preempted while it still holds an image. Of copies, the worker would never hold the original.
+  EXPECT_GE(after["egomotion"] - before["egomotion"], 5);
   ASSERT_TRUE(manager_.clear());
   EXPECT_TRUE(waitFor([] { return CameraNodelet::held() == 0; }, 1.0)) << CameraNodelet::held();
 }
@@ -126,7 +132,9 @@ TEST_F(NodeletManager, NeighboursDoNotDisturbEachOther) {
   for (int round = 0; round < 5; ++round) {
     const ros::WallTime begin = ros::WallTime::now();
     ASSERT_TRUE(manager_.unload(b.nodelet));
-    EXPECT_LT((ros::WallTime::now() - begin).toSec(), 1.0);
+    const double seconds = (ros::WallTime::now() - begin).toSec();
+    std::printf("unloaded in %.2f s\n", seconds);
+    EXPECT_LT(seconds, starved() ? 5.0 : 1.0);
     waitFor([] { return false; }, 0.2);  // what was under way
     const int poses = b.poses;
     EXPECT_TRUE(morePoses(a, 3)) << "round " << round;
@@ -145,7 +153,7 @@ TEST_F(NodeletManager, ParametersChangeBetweenFrames) {
   ASSERT_TRUE(load(a.nodelet));
   ASSERT_TRUE(loadCamera());
   ASSERT_TRUE(morePoses(a));
-  const std::uint32_t tracks = a.last_motion->tracks;
+  ASSERT_GT(a.last_motion->tracks, 2u * 4u * 15u);
 
   const auto set = [&](const dynamic_reconfigure::Config& wanted) {
     dynamic_reconfigure::Reconfigure change;
@@ -178,21 +186,22 @@ TEST_F(NodeletManager, ParametersChangeBetweenFrames) {
 
   dynamic_reconfigure::Config wanted;
   wanted.strs = {text("solver", "4pt-axis")};
-  wanted.ints = {integer("features_per_camera", 30)};
+  wanted.ints = {integer("features_per_camera", 15)};
   const dynamic_reconfigure::Config changed = set(wanted);
   EXPECT_EQ(found(changed.strs, "solver"), "4pt-axis");
-  EXPECT_EQ(found(changed.ints, "features_per_camera"), 30);
-  EXPECT_TRUE(waitFor([&] { return a.last_motion->solver == "4pt-axis" && a.last_motion->tracks < tracks / 2; }));
+  EXPECT_EQ(found(changed.ints, "features_per_camera"), 15);
+  // From two images into two images, of which the features of each camera are seen in both at most.
+  EXPECT_TRUE(waitFor([&] { return a.last_motion->solver == "4pt-axis" && a.last_motion->tracks <= 2 * 4 * 15; }));
   int written = 0;
   EXPECT_TRUE(ros::param::get(a.nodelet + "/tracker/features_per_camera", written));
-  EXPECT_EQ(written, 30);
+  EXPECT_EQ(written, 15);
 
   // Refused as a whole: the solver is none, the number of features alone would do.
   wanted.strs = {text("solver", "8pt")};
   wanted.ints = {integer("features_per_camera", 50)};
   const dynamic_reconfigure::Config refused = set(wanted);
   EXPECT_EQ(found(refused.strs, "solver"), "4pt-axis");
-  EXPECT_EQ(found(refused.ints, "features_per_camera"), 30);
+  EXPECT_EQ(found(refused.ints, "features_per_camera"), 15);
   EXPECT_TRUE(morePoses(a));
   EXPECT_EQ(a.last_motion->odom_epoch, 0u);
   ASSERT_TRUE(manager_.clear());

@@ -74,7 +74,7 @@ class EgoMotionRos {
   std::unique_ptr<RecentImages> recent_images_;
   std::unique_ptr<Publishers> publishers_;
   std::unique_ptr<Diagnostics> diagnostics_;
-  TopicWatch::Clock::time_point warned_;
+  TopicWatch::Clock::time_point warned_, last_frame_;
   std::string input_fault_;  // the newest since the last report
 
   std::unique_ptr<image_transport::ImageTransport> transport_;

@@ -73,14 +73,16 @@ class EgoMotionBag(unittest.TestCase):
             _, errors = process.communicate(timeout=20)
             seconds = time.monotonic() - begin
             self.assertEqual(process.returncode, 0, errors)
-            self.assertLess(seconds, 1.0)
+            starved = os.getloadavg()[0] > os.cpu_count()
+            self.assertLess(seconds, 5.0 if starved else 1.0)
             report = json.loads(pathlib.Path(outputs["report"]).read_text())
             self.assertTrue(report["interrupted"], "the run was over before the signal")
             self.assertIn("interrupted", errors)
             trajectory = pathlib.Path(outputs["trajectory"]).read_text()
             self.assertEqual(trajectory.count("\n"), report["poses"])
             self.assertTrue(all(len(line.split()) == 8 for line in trajectory.splitlines()))
-            self.assertTrue(all(len(line.split()) == 12 for line in open(outputs["kitti"])))
+            kitti = pathlib.Path(outputs["kitti"]).read_text()
+            self.assertTrue(all(len(line.split()) == 12 for line in kitti.splitlines()))
             with rosbag.Bag(outputs["output_bag"]) as bag:
                 self.assertGreaterEqual(bag.get_message_count(topic_filters=["odometry"]), report["poses"])
             poses += report["poses"]
