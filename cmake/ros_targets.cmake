@@ -17,6 +17,7 @@ target_link_libraries(multicam_egomotion_nodelet multicam_egomotion_ros)
 precompile_headers(ros_libraries multicam_egomotion_nodelet)
 
 add_executable(egomotion_node src/tools/egomotion_node.cpp)
+target_include_directories(egomotion_node PRIVATE src/tools)
 target_link_libraries(egomotion_node multicam_egomotion_ros)
 
 layer_sources(bag_runner_sources tools/bag_runner)

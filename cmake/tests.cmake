@@ -114,6 +114,7 @@ set_tests_properties(consumer_install PROPERTIES FIXTURES_REQUIRED installed)
 
 # A long run, by hand or by test_long.sh.
 if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
+  #catkin_lint: ignore_once uninstalled_target
   add_executable(loop_soak EXCLUDE_FROM_ALL test/soak/loop_soak.cpp)
   target_link_libraries(loop_soak multicam_egomotion_simulator)
   set_target_properties(loop_soak PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
