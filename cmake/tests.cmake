@@ -112,13 +112,16 @@ add_consumer_test(consumer_install -DCMAKE_PREFIX_PATH=${prefix})
 set_tests_properties(install_solvers PROPERTIES FIXTURES_SETUP installed TIMEOUT 60)
 set_tests_properties(consumer_install PROPERTIES FIXTURES_REQUIRED installed)
 
-# A long run, by hand or by test_long.sh.
+# Long runs, by hand or by test_long.sh.
 if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
-  #catkin_lint: ignore_once uninstalled_target
-  add_executable(loop_soak EXCLUDE_FROM_ALL test/soak/loop_soak.cpp)
-  target_link_libraries(loop_soak multicam_egomotion_simulator)
-  set_target_properties(loop_soak PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-  add_dependencies(tests loop_soak)
+  file(GLOB soaks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/soak/*.cpp)
+  foreach(file ${soaks})
+    get_filename_component(name ${file} NAME_WE)
+    add_executable(${name} EXCLUDE_FROM_ALL ${file})
+    target_link_libraries(${name} multicam_egomotion_simulator)
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+    add_dependencies(tests ${name})
+  endforeach()
 endif()
 
 if(benchmark_FOUND)
