@@ -131,7 +131,8 @@ stage_signals() {
   build_release
   local recording
   recording=$(simulate handheld_stereo --duration 8)
-  run_rostest "$build" signals signals.test count:="$signals" bag:="$recording.bag" rig:="$recording.rig.yaml"
+  MULTICAM_EGOMOTION_SIGNALS=$signals run_rostest "$build" signals live_faults.test bag:="$recording.bag" \
+    rig:="$recording.rig.yaml"
 }
 
 for stage in "${stages[@]}"; do
