@@ -8,7 +8,8 @@ endif()
 file(GLOB ros_unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_*.cpp)
 list(REMOVE_ITEM ros_unit_tests ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_fault_table.cpp)
 add_executable(test_ros_layer EXCLUDE_FROM_ALL ${ros_unit_tests})
-target_compile_definitions(test_ros_layer PRIVATE CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
+set_source_files_properties(test/unit/ros/test_corrupt_bag.cpp PROPERTIES
+  COMPILE_DEFINITIONS CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
 target_link_libraries(test_ros_layer multicam_egomotion_bag_runner multicam_egomotion_fault_injection GTest::GTest
   GTest::Main)
 target_compile_options(test_ros_layer PRIVATE -O1)  # compiles faster, and what counts is in the libraries
