@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/estimation/bundle_adjustment.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
@@ -207,7 +207,7 @@ void BundleAdjustment::accumulateRest(Eigen::MatrixXd* H, Eigen::VectorXd* b) co
     Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
     information.topLeftCorner<3, 3>() = factor.translation_information;
     information.bottomRightCorner<3, 3>() = factor.rotation_information;
-    const Eigen::Matrix<double, 12, 12> JtJ = J.transpose() * information * J;
+    const Eigen::Matrix<double, 12, 12> JtJ = propagated(J.transpose(), information);
     const Eigen::Matrix<double, 12, 1> Jtr = -J.transpose() * information * r;
     H->block<6, 6>(ia, ia) += JtJ.block<6, 6>(0, 0);
     H->block<6, 6>(ia, ib) += JtJ.block<6, 6>(0, 6);
@@ -257,7 +257,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
     H.diagonal().array() += 1e-9;
     step.setZero();
     if (size > fixed) {
-      step.tail(size - fixed) = H.bottomRightCorner(size - fixed, size - fixed).ldlt().solve(b.tail(size - fixed));
+      step.tail(size - fixed) = symmetricSolve(H.bottomRightCorner(size - fixed, size - fixed), b.tail(size - fixed));
     }
     if (!step.allFinite()) {
       summary.finite = false;

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/frame_consensus.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "multicam_egomotion/estimation/minimal_solvers.h"
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
@@ -103,9 +102,9 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
 
   // R_a_b Exp(d) transposed is Exp(-d) R_f2_f1, so the covariance is that of the left perturbation.
   MotionPriors priors;
-  priors.rotation = {R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
+  priors.rotation = {R_f2_f1, symmetricInverse(motion.rotation_covariance)};
   const Eigen::Vector3d rotation_vector = logSO3(R_f2_f1);
-  const double angle_sigma = std::sqrt(motion.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
+  const double angle_sigma = std::sqrt(symmetricEigenvalues(motion.rotation_covariance)[2]);
   RobustEstimate estimated;
   if (set.cameraPairs().size() == 1) {
     const CorrespondenceSet::CameraPair& pair = set.cameraPairs().front();

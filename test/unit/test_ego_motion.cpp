@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "ego_motion_run.h"
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "simulator/simulator.h"
 
@@ -103,11 +104,11 @@ TEST_F(EgoMotionTest, GivesAPoseForEveryFrameFromTheSecondOn) {
     EXPECT_EQ(result.odom_epoch, 0u);
     EXPECT_EQ(result.image_stamps_ns.size(), 2u);
     EXPECT_TRUE(result.T_odom_body.pose.matrix().allFinite());
-    EXPECT_TRUE(positiveDefinite(result.T_odom_body.covariance) || frame == 0) << frame;
-    EXPECT_TRUE(positiveDefinite(result.twist.covariance)) << frame;
+    EXPECT_TRUE(isPositiveDefinite(result.T_odom_body.covariance) || frame == 0) << frame;
+    EXPECT_TRUE(isPositiveDefinite(result.twist.covariance)) << frame;
     EXPECT_GT(result.tilt_sigma, 0.0);
     if (frame == 0) continue;
-    EXPECT_TRUE(positiveDefinite(result.T_previous_body.covariance)) << frame;
+    EXPECT_TRUE(isPositiveDefinite(result.T_previous_body.covariance)) << frame;
     EXPECT_GT(result.inliers, 50) << frame;
     EXPECT_LE(result.inliers, result.tracks);
     EXPECT_FALSE(result.features.empty());
@@ -167,7 +168,7 @@ TEST_F(EgoMotionTest, CoastsWithoutImagesAndRecovers) {
     if (result.status != EgoMotionStatus::kCoasting || result.has_relative_pose) continue;
     ++coasting;
     EXPECT_TRUE(result.has_pose);
-    EXPECT_TRUE(positiveDefinite(result.T_odom_body.covariance));
+    EXPECT_TRUE(isPositiveDefinite(result.T_odom_body.covariance));
     EXPECT_GT(result.T_odom_body.covariance.trace(), last_variance);
     last_variance = result.T_odom_body.covariance.trace();
   }
@@ -281,7 +282,7 @@ TEST_F(EgoMotionTest, WorksWithoutAnImu) {
   for (int frame = 1; frame < kFrames; ++frame) {
     EXPECT_TRUE(results[frame].has_relative_pose) << frame;
     EXPECT_EQ(results[frame].status, EgoMotionStatus::kTracking) << frame;
-    EXPECT_TRUE(positiveDefinite(results[frame].T_previous_body.covariance));
+    EXPECT_TRUE(isPositiveDefinite(results[frame].T_previous_body.covariance));
   }
   expectAccurate(results, 0.005, 0.012);
 }

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "ego_motion_run.h"
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "scaled_rig.h"
 #include "simulator/simulator.h"
@@ -50,7 +51,7 @@ PathErrors errorsOf(const std::vector<EgoMotionResult>& results, const Simulator
       simulator.stateAt(results.front().stamp_ns).T_world_body * results.front().T_odom_body.pose.inverse();
   for (const EgoMotionResult& result : results) {
     if (!result.has_pose) continue;
-    EXPECT_TRUE(errors.poses == 0 || positiveDefinite(result.T_odom_body.covariance));
+    EXPECT_TRUE(errors.poses == 0 || isPositiveDefinite(result.T_odom_body.covariance));
     const Eigen::Isometry3d truth = T_world_odom.inverse() * simulator.stateAt(result.stamp_ns).T_world_body;
     const Eigen::Vector3d error = result.T_odom_body.pose.translation() - truth.translation();
     const Eigen::Vector3d sigma = result.T_odom_body.covariance.diagonal().head<3>().cwiseSqrt();

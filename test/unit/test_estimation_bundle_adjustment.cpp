@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "bundle_scene.h"
+#include "multicam_egomotion/geometry/covariance.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -120,7 +120,7 @@ void denseVision(const BundleAdjustment& bundle, const BundleOptions& options, E
 void eliminateLandmarks(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, int kept, Eigen::MatrixXd* reduced_H,
                         Eigen::VectorXd* reduced_b) {
   const int gone = static_cast<int>(H.rows()) - kept;
-  const Eigen::MatrixXd gain = H.bottomRightCorner(gone, gone).ldlt().solve(H.bottomLeftCorner(gone, kept));
+  const Eigen::MatrixXd gain = symmetricSolve(H.bottomRightCorner(gone, gone), H.bottomLeftCorner(gone, kept));
   *reduced_H = H.topLeftCorner(kept, kept) - H.topRightCorner(kept, gone) * gain;
   *reduced_b = b.head(kept) - gain.transpose() * b.tail(gone);
 }
@@ -160,8 +160,7 @@ TEST(BundleAdjustment, GradientIsThatOfTheCost) {
       denseVision(bundle, options, &H, &b);
       for (std::size_t l = 0; l < bundle.landmarks.size(); ++l) {
         const int at = 18 + 3 * static_cast<int>(l);
-        bundle.landmarks[l] =
-            moved(bundle.landmarks[l], H.block<3, 3>(at, at).ldlt().solve(Eigen::Vector3d(b.segment<3>(at))));
+        bundle.landmarks[l] = moved(bundle.landmarks[l], symmetricSolve(H.block<3, 3>(at, at), b.segment<3>(at)));
       }
     }
     Eigen::MatrixXd vision_H, rest_H;
@@ -268,7 +267,7 @@ TEST(BundleAdjustment, OneStepNearTheOptimumIsTheDenseOne) {
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
   denseVision(scene.bundle, options, &H, &b);
-  const Eigen::VectorXd step = H.bottomRightCorner(H.rows() - 6, H.rows() - 6).ldlt().solve(b.tail(H.rows() - 6));
+  const Eigen::VectorXd step = symmetricSolve(H.bottomRightCorner(H.rows() - 6, H.rows() - 6), b.tail(H.rows() - 6));
   const std::vector<BundlePose> before = scene.bundle.poses;
   scene.bundle.solve(options);
   for (int i = 1; i < 3; ++i) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
 #include "multicam_egomotion/imu/inertial_state.h"
@@ -235,8 +236,8 @@ TEST(InertialState, IsConsistentOverManyRuns) {
         if (check) {
           const Eigen::Vector3d r = logSO3(state.rotationSinceFrame().transpose() * R1.transpose() * R2);
           const Eigen::Vector3d d = p_1_2 - state.displacementSinceFrame();
-          rotation += r.dot(state.rotationSinceFrameCovariance().inverse() * r) / 3;
-          displacement += d.dot(state.displacementSinceFrameCovariance().inverse() * d) / 3;
+          rotation += squaredMahalanobis(r, state.rotationSinceFrameCovariance()) / 3;
+          displacement += squaredMahalanobis(d, state.displacementSinceFrameCovariance()) / 3;
         }
         state.correctRelativeRotation(R1.transpose() * R2 * expSO3(noise(rotation_sigma)), isotropic(rotation_sigma));
         if (by_displacement) {
@@ -249,10 +250,10 @@ TEST(InertialState, IsConsistentOverManyRuns) {
           const Eigen::Vector2d e = tiltError(state, R2);
           const Eigen::Vector3d v = velocity_true - state.velocityInImuAxes();
           const Eigen::Vector3d g = bias_g - state.gyroscopeBias(), a = bias_a - state.accelerometerBias();
-          tilt += e.dot(state.tiltCovariance().inverse() * e) / 2;
-          velocity += v.dot(state.velocityCovarianceInImuAxes().inverse() * v) / 3;
-          gyroscope_bias += g.dot(state.gyroscopeBiasCovariance().inverse() * g) / 3;
-          accelerometer_bias += a.dot(state.accelerometerBiasCovariance().inverse() * a) / 3;
+          tilt += squaredMahalanobis(e, state.tiltCovariance()) / 2;
+          velocity += squaredMahalanobis(v, state.velocityCovarianceInImuAxes()) / 3;
+          gyroscope_bias += squaredMahalanobis(g, state.gyroscopeBiasCovariance()) / 3;
+          accelerometer_bias += squaredMahalanobis(a, state.accelerometerBiasCovariance()) / 3;
           ++checks;
         }
       }
@@ -382,7 +383,7 @@ TEST(InertialState, ASilentImuIsAGapHoweverOftenItIsAsked) {
   const Eigen::Vector3d p = motion.attitude(5).transpose() * (motion.position(6.5) - motion.position(5));
   for (const InertialState* state : {&seldom, &often, &across}) {
     const Eigen::Vector3d error = p - state->displacementSinceFrame();
-    EXPECT_LT(error.dot(state->displacementSinceFrameCovariance().inverse() * error), 14.2);
+    EXPECT_LT(squaredMahalanobis(error, state->displacementSinceFrameCovariance()), 14.2);
     EXPECT_LT(tiltError(*state, motion.attitude(6.5)).norm(), 3 * state->tiltSigma());
     EXPECT_GT(state->tiltSigma(), 20 * kDegree);
   }
@@ -409,7 +410,7 @@ TEST(InertialState, VisionWinsOverABrokenGyroscope) {
     }
     const Eigen::Matrix3d R = motion.attitude(t1).transpose() * motion.attitude(t2);
     const Eigen::Vector3d off = logSO3(state.rotationSinceFrame().transpose() * R);
-    const double nees = off.dot(state.rotationSinceFrameCovariance().inverse() * off);
+    const double nees = squaredMahalanobis(off, state.rotationSinceFrameCovariance());
     state.correctRelativeRotation(R, isotropic(0.05 * kDegree));
     state.correctVelocity(motion.attitude(t2).transpose() * motion.velocity(t2), isotropic(0.05));
     state.markFrame();
