@@ -1,6 +1,5 @@
 # The ROS library, nodelet, node and bag tools, and everything that is installed for them.
 find_package(Boost REQUIRED COMPONENTS program_options)
-add_compile_definitions(BOOST_ALL_NO_LIB BOOST_PROGRAM_OPTIONS_DYN_LINK)  # as Boost::program_options: headers are precompiled once
 
 layer_sources(ros_sources ros)
 add_library(multicam_egomotion_ros ${ros_sources})
@@ -25,7 +24,7 @@ precompile_headers(ros_libraries egomotion_node)
 layer_sources(bag_runner_sources tools/bag_runner)
 add_library(multicam_egomotion_bag_runner STATIC ${bag_runner_sources})
 target_include_directories(multicam_egomotion_bag_runner PUBLIC src/tools)
-target_link_libraries(multicam_egomotion_bag_runner PUBLIC multicam_egomotion_ros PRIVATE Boost::program_options)
+target_link_libraries(multicam_egomotion_bag_runner PUBLIC multicam_egomotion_ros PRIVATE boost_program_options)
 precompile_headers(ros_libraries multicam_egomotion_bag_runner)
 add_executable(egomotion_bag src/tools/egomotion_bag.cpp)
 target_link_libraries(egomotion_bag multicam_egomotion_bag_runner)
@@ -38,12 +37,12 @@ target_include_directories(multicam_egomotion_fault_injection SYSTEM PUBLIC ${ca
 target_link_libraries(multicam_egomotion_fault_injection PUBLIC multicam_egomotion_core ${catkin_LIBRARIES})
 precompile_headers(ros_libraries multicam_egomotion_fault_injection)
 add_executable(corrupt_bag src/tools/corrupt_bag.cpp)
-target_link_libraries(corrupt_bag multicam_egomotion_fault_injection Boost::program_options)
+target_link_libraries(corrupt_bag multicam_egomotion_fault_injection boost_program_options)
 precompile_headers(ros_libraries corrupt_bag)
 
 add_executable(egomotion_sim src/tools/egomotion_sim.cpp)
 target_include_directories(egomotion_sim SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
-target_link_libraries(egomotion_sim multicam_egomotion_simulator ${catkin_LIBRARIES} Boost::program_options)
+target_link_libraries(egomotion_sim multicam_egomotion_simulator ${catkin_LIBRARIES} boost_program_options)
 precompile_headers(ros_libraries egomotion_sim)
 set(ros_tools egomotion_node egomotion_bag corrupt_bag egomotion_sim)
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace multicam_egomotion {
 
@@ -27,6 +28,13 @@ bool isPositiveDefinite(const MatrixRef& P) {
 
 Eigen::VectorXd symmetricEigenvalues(const MatrixRef& P) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(P, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigen::MatrixXd withEigenvaluesRaised(const MatrixRef& P, double smallest, double share) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(P);
+  const double floor = std::max(smallest, share * eigen.eigenvalues().maxCoeff());
+  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(floor);
+  return propagated(eigen.eigenvectors(), Eigen::MatrixXd(values.asDiagonal()));
 }
 
 }  // namespace multicam_egomotion

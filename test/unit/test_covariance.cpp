@@ -38,6 +38,14 @@ TEST(Covariance, EigenvaluesAscend) {
   EXPECT_LT((symmetricEigenvalues(example()) - Eigen::Vector3d(1, 4, 9)).norm(), 1e-13);
 }
 
+TEST(Covariance, OnlySmallEigenvaluesAreRaised) {
+  EXPECT_LT((withEigenvaluesRaised(example(), 0.5, 0.01) - example()).norm(), 1e-13);
+  const Eigen::MatrixXd raised = withEigenvaluesRaised(example(), 2, 0.01);
+  EXPECT_LT((symmetricEigenvalues(raised) - Eigen::Vector3d(2, 4, 9)).norm(), 1e-13);
+  EXPECT_LT((raised * example() - example() * raised).norm(), 1e-12);  // the same eigenvectors
+  EXPECT_NEAR(symmetricEigenvalues(withEigenvaluesRaised(example(), 0, 0.5))[0], 4.5, 1e-13);
+}
+
 TEST(Covariance, WhatIsNotPositiveDefiniteIsTold) {
   Eigen::Matrix3d P = example();
   EXPECT_TRUE(isPositiveDefinite(P));

@@ -29,4 +29,7 @@ bool isPositiveDefinite(const MatrixRef& P);
 /// Eigenvalues of a symmetric P, ascending.
 Eigen::VectorXd symmetricEigenvalues(const MatrixRef& P);
 
+/// P with its eigenvalues raised to at least `smallest` and to at least `share` of the largest; symmetric.
+Eigen::MatrixXd withEigenvaluesRaised(const MatrixRef& P, double smallest, double share);
+
 }  // namespace multicam_egomotion
