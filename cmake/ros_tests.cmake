@@ -50,7 +50,7 @@ file(MAKE_DIRECTORY ${recordings})
 function(add_ros_test name file)
   add_test(NAME rostest_${name} COMMAND ${run_rostest} ${name} ${CMAKE_CURRENT_SOURCE_DIR}/test/rostest/${file}
     ${CMAKE_BINARY_DIR}/test/rostest/${name} ${ARGN})
-  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RESOURCE_LOCK ros)  # one at a time; they mostly wait
 endfunction()
 
 # A simulated recording, made when the tests run.
