@@ -13,10 +13,18 @@ constexpr int kDegree = 8;
 struct Search {
   std::array<double, kDegree + 1> c;  // of s, or of 1 / s where `reciprocal`
   std::array<double, kDegree> slope;
-  double noise;
+  std::array<double, kDegree + 1> noise;  // of c
+  double largest_noise;                   // of the value at |x| = 1
   bool reciprocal;
   int subdivisions;
   ProjectiveRoots* roots;
+
+  // Error of the values, and of the Bernstein coefficients, where |x| ≤ `largest`.
+  double noiseWithin(double largest) const {
+    double value = noise[kDegree];
+    for (int k = kDegree; k-- > 0;) value = value * largest + noise[k];
+    return value;
+  }
 
   void add(double x, bool touching) {
     if (roots->count < static_cast<int>(roots->roots.size())) roots->roots[roots->count++] = {x, reciprocal, touching};
@@ -55,7 +63,8 @@ struct Variations {
   int certain, possible;
 };
 
-Variations variations(const double* b, double noise) {
+// On [lo, hi].
+Variations variations(const Search& search, const double* b, double lo, double hi) {
   Variations found = {0, 0};
   double smallest = std::abs(b[0]);
   for (int i = 1; i <= kDegree; ++i) {
@@ -63,6 +72,8 @@ Variations variations(const double* b, double noise) {
     smallest = std::min(smallest, std::abs(b[i]));
   }
   found.possible = found.certain;
+  if (smallest > search.largest_noise) return found;
+  const double noise = search.noiseWithin(std::max(std::abs(lo), std::abs(hi)));
   if (smallest <= noise) {
     // Each one within the noise takes the sign opposite to the one before; those ahead of all others alternate too.
     int first = 0;
@@ -81,7 +92,7 @@ Variations variations(const double* b, double noise) {
 void isolate(Search& search, const double* b, double lo, double hi) {
   constexpr double kNarrowest = 1e-7;
   constexpr int kMaxSubdivisions = 300;  // a polynomial of rounding alone must not take for ever
-  const Variations found = variations(b, search.noise);
+  const Variations found = variations(search, b, lo, hi);
   if (found.possible == 0) return;
   if (found.certain == 1 && found.possible == 1) {
     search.add(rootInBracket(search, lo, hi, b[0], b[kDegree]), false);
@@ -129,18 +140,21 @@ void bernstein(const double* c, double sign, double* b) {
 
 }  // namespace
 
-ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree, double noise) {
+ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree,
+                                     const std::array<double, 9>& noise) {
   ProjectiveRoots roots;
-  double c[2][kDegree + 1] = {}, at_plus = 0, at_minus = 0;
+  double c[2][kDegree + 1] = {}, at_plus = 0, at_minus = 0, largest_noise = 0;
   for (int k = 0; k <= degree; ++k) {
+    largest_noise += noise[k];
     c[0][k] = coefficients[k];
     c[1][degree - k] = coefficients[k];
     at_plus += coefficients[k];
     at_minus += k & 1 ? -coefficients[k] : coefficients[k];
   }
   for (int chart = 0; chart < 2; ++chart) {
-    Search search = {{}, {}, noise, chart == 1, 0, &roots};
+    Search search = {{}, {}, {}, largest_noise, chart == 1, 0, &roots};
     std::copy(c[chart], c[chart] + kDegree + 1, search.c.begin());
+    for (int k = 0; k <= degree; ++k) search.noise[k] = noise[chart == 0 ? k : degree - k];
     for (int k = 0; k < kDegree; ++k) search.slope[k] = (k + 1) * search.c[k + 1];
     double positive[kDegree + 1], negative[kDegree + 1];
     bernstein(c[chart], 1.0, positive);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/solvers/four_point_lee.h"
 
+#include <cmath>
+
 #include "bernstein_roots.h"
 #include "epipolar_poses.h"
 #include "epipolar_system.h"
@@ -36,49 +38,89 @@ Column columnOf(const EpipolarSystem& system, int column) {
   return result;
 }
 
-Polynomial<5> minorOf(const Column& a, const Column& b, int row1, int row2) {
+Column magnitudes(const Column& column) {
+  Column result;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 3; ++k) result[i].c[k] = std::abs(column[i].c[k]);
+  }
+  return result;
+}
+
+// `negative` is the sign of the products that a determinant subtracts, -1; with +1 and columns of magnitudes the
+// expansion bounds the sum of the magnitudes of all terms.
+Polynomial<5> minorOf(const Column& a, const Column& b, int row1, int row2, double negative) {
   Polynomial<5> minor;
   addProduct(a[row1], b[row2], 1.0, minor);
-  addProduct(a[row2], b[row1], -1.0, minor);
+  addProduct(a[row2], b[row1], negative, minor);
   return minor;
 }
 
+using Columns = std::array<Column, 4>;
+using Coefficients = std::array<double, 9>;
+
 // Laplace expansion by the 2x2 minors of the first and of the last two columns.
-std::array<double, 9> determinant(const EpipolarSystem& system) {
-  const Column columns[4] = {columnOf(system, 0), columnOf(system, 1), columnOf(system, 2), columnOf(system, 3)};
+Coefficients expand(const Columns& columns, double negative) {
   constexpr int kRows[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
-  constexpr double kSign[6] = {1, -1, 1, 1, -1, 1};
+  constexpr bool kSubtracted[6] = {false, true, false, false, true, false};
   Polynomial<9> sum;
   for (int i = 0; i < 6; ++i) {
-    addProduct(minorOf(columns[0], columns[1], kRows[i][0], kRows[i][1]),
-               minorOf(columns[2], columns[3], kRows[i][2], kRows[i][3]), kSign[i], sum);
+    addProduct(minorOf(columns[0], columns[1], kRows[i][0], kRows[i][1], negative),
+               minorOf(columns[2], columns[3], kRows[i][2], kRows[i][3], negative), kSubtracted[i] ? negative : 1.0,
+               sum);
   }
-  std::array<double, 9> result;
+  Coefficients result;
   for (int k = 0; k < 9; ++k) result[k] = sum.c[k];
   return result;
 }
 
 // Three correspondences of one camera pair: det M has the determinant of their normals, of degree 6, for a factor; the
 // roots of the other factor are those in which the three meet in their camera centre.
-std::array<double, 9> determinantOfNormals(const EpipolarSystem& system) {
-  const Column x = columnOf(system, 0), y = columnOf(system, 1), z = columnOf(system, 2);
+Coefficients expandNormals(const Columns& columns, double negative) {
+  const auto &x = columns[0], &y = columns[1], &z = columns[2];
   Polynomial<7> sum;
-  addProduct(minorOf(x, y, 0, 1), z[2], 1.0, sum);
-  addProduct(minorOf(x, y, 0, 2), z[1], -1.0, sum);
-  addProduct(minorOf(x, y, 1, 2), z[0], 1.0, sum);
-  std::array<double, 9> result = {};
+  addProduct(minorOf(x, y, 0, 1, negative), z[2], 1.0, sum);
+  addProduct(minorOf(x, y, 0, 2, negative), z[1], negative, sum);
+  addProduct(minorOf(x, y, 1, 2, negative), z[0], 1.0, sum);
+  Coefficients result = {};
   for (int k = 0; k < 7; ++k) result[k] = sum.c[k];
   return result;
+}
+
+Columns columnsOf(const EpipolarSystem& system) {
+  return {columnOf(system, 0), columnOf(system, 1), columnOf(system, 2), columnOf(system, 3)};
+}
+
+ProjectiveRoots rootsOfDeterminant(const EpipolarSystem& system) {
+  constexpr double kRounding = 1e-15;  // of a coefficient, relative to the sum of the magnitudes of its terms
+  const auto expansion = system.three_and_one ? expandNormals : expand;
+  const int degree = system.three_and_one ? 6 : system.identity_root ? 7 : 8;
+  Columns columns = columnsOf(system);
+  const Coefficients coefficients = expansion(columns, -1.0);
+  for (Column& column : columns) column = magnitudes(column);
+  Coefficients noise = expansion(columns, 1.0);
+  for (double& value : noise) value *= kRounding;
+  return realRootsByBernstein(coefficients, degree, noise);
+}
+
+// The same prior with the yaw of the first aligned frame such that the yaw between the frames is zero where the body
+// turns least. There, at small rotations, the roots lie close together, and the coefficients are exact about s = 0.
+VerticalPrior countedFromLeastRotation(const VerticalPrior& prior) {
+  const Eigen::Matrix3d between = prior.R_aligned_body2 * prior.R_aligned_body1.transpose();
+  const double cosine = between(0, 0) + between(1, 1), sine = between(1, 0) - between(0, 1);
+  const double length = std::hypot(cosine, sine);
+  if (!(length > 1e-3)) return prior;
+  Eigen::Matrix3d yaw = Eigen::Matrix3d::Identity();
+  yaw.topLeftCorner<2, 2>() << cosine / length, -sine / length, sine / length, cosine / length;
+  return {yaw * prior.R_aligned_body1, prior.R_aligned_body2};
 }
 
 }  // namespace
 
 PoseCandidates<8> solveFourPointLee(const std::array<RayCorrespondence, 4>& sample, const VerticalPrior& prior,
                                     const SolverOptions& options) {
-  constexpr double kNoise = 1e-14;  // rounding of the expanded determinant of rows of order 1
   PoseCandidates<8> candidates;
   EpipolarSystem system;
-  candidates.status = buildEpipolarSystem(sample, prior, options, system);
+  candidates.status = buildEpipolarSystem(sample, countedFromLeastRotation(prior), options, system);
   if (candidates.status != SolverStatus::kOk) return candidates;
   if (system.standing_still) {
     candidates.poses[candidates.count++] = standingStill();
@@ -88,9 +130,7 @@ PoseCandidates<8> solveFourPointLee(const std::array<RayCorrespondence, 4>& samp
     candidates.status = SolverStatus::kCentral;
     return candidates;
   }
-  const ProjectiveRoots roots = system.three_and_one
-                                    ? realRootsByBernstein(determinantOfNormals(system), 6, kNoise)
-                                    : realRootsByBernstein(determinant(system), system.identity_root ? 7 : 8, kNoise);
+  const ProjectiveRoots roots = rootsOfDeterminant(system);
   AngleEstimates estimates;
   for (int i = 0; i < roots.count; ++i) {
     const ProjectiveRoot& root = roots.roots[i];
@@ -104,7 +144,7 @@ std::array<double, 9> leePolynomial(const std::array<RayCorrespondence, 4>& samp
   EpipolarSystem system;
   if (buildEpipolarSystem(sample, prior, {}, system) != SolverStatus::kOk) return {};
   system.identity_root = false;
-  return determinant(system);
+  return expand(columnsOf(system), -1.0);
 }
 
 }  // namespace multicam_egomotion

@@ -87,6 +87,10 @@ SimulatedSample pureYaw(SampleSimulator& simulator, SampleKind kind, Motion moti
   return s;
 }
 
+/// What a root may be away from the reference [rad]: more than 1e-9 only where the determinant is so flat that its
+/// rounding moves the root as far.
+double tolerance(double slope) { return std::max(1e-9, 3e-18 / slope); }
+
 VerticalPrior frames(Solver solver, const SimulatedSample& s) {
   if (solver == Solver::kLee) return s.vertical;
   return {rotationToZ(s.axis.axis), rotationToZ(s.axis.axis)};
@@ -117,9 +121,8 @@ TEST(Baselines, FindTheTruthToRounding) {
       const size_t n = errors.size();
       SCOPED_TRACE(testing::Message() << "solver " << static_cast<int>(solver) << " up to " << range[1] << " deg");
       EXPECT_LE(errors[n / 2], std::pow(10, -14.5));
-      EXPECT_LE(errors[n * 999 / 1000], std::pow(10, -11.2));
-      EXPECT_LE(std::count_if(errors.begin(), errors.end(), [](double error) { return error > 1e-6; }),
-                static_cast<long>(n / 1000));
+      EXPECT_LE(errors[n * 999 / 1000], 1e-12);
+      EXPECT_LE(errors.back(), 1e-8);
       EXPECT_LE(translation_errors[n / 2], 1e-9);
     }
   }
@@ -162,12 +165,14 @@ TEST(Baselines, ReturnTheSetOfTheReference) {
             continue;
           }
           ASSERT_EQ(found.size(), reference.angles.size());
-          for (double angle : found) EXPECT_LE(distanceToNearest(reference.angles, angle), 1e-8);
-          for (double angle : reference.angles) EXPECT_LE(distanceToNearest(found, angle), 1e-8);
+          for (size_t i = 0; i < found.size(); ++i) {
+            EXPECT_LE(distanceToNearest(found, reference.angles[i]), tolerance(reference.slopes[i]));
+          }
           // The degree-6 solvers find the same.
           const Poses ours = solve(solver == Solver::kLee ? Solver::kVertical : Solver::kAxis, s);
           ASSERT_EQ(ours.size(), poses.size());
-          for (const RelativePose& pose : ours) EXPECT_LE(errorOfNearest(poses, pose.R), 1e-8);
+          const double flattest = *std::min_element(reference.slopes.begin(), reference.slopes.end());
+          for (const RelativePose& pose : ours) EXPECT_LE(errorOfNearest(poses, pose.R), tolerance(flattest));
         }
       }
     }
@@ -200,8 +205,9 @@ TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
         continue;
       }
       ASSERT_EQ(found.size(), reference.angles.size());
-      for (double angle : found) EXPECT_LE(distanceToNearest(reference.angles, angle), 1e-8);
-      for (double angle : reference.angles) EXPECT_LE(distanceToNearest(found, angle), 1e-8);
+      for (size_t i = 0; i < found.size(); ++i) {
+        EXPECT_LE(distanceToNearest(found, reference.angles[i]), tolerance(reference.slopes[i]));
+      }
     }
   }
   EXPECT_LE(undecided, samples / 100);

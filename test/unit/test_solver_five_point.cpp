@@ -155,12 +155,13 @@ TEST(FivePointMartyushev, MissesNoSolutionOfADenseSearch) {
   constexpr int kStarts = 150;
   const double ranges[][2] = {{0.05, 0.3}, {0.3, 1}, {1, 3}};
   SampleSimulator simulator(3);
-  int expected = 0, missed = 0;
+  int expected = 0;
   for (int trial = 0; trial < 3 * kKinds; ++trial) {
     const CameraPairs& pairs = pairsOf(trial);
     const double* range = ranges[trial / kKinds];
     const FivePointSample p = fivePointSample(simulator, pairs, motionOf(trial), range[0], range[1]);
     const PoseCandidates<44> poses = solveFivePointMartyushev(p.rays, p.prior);
+    const bool triple = pairs[0] == pairs[2] && pairs[0] == pairs[4];  // may meet in their camera centre
     std::vector<Eigen::Matrix3d> found;
     for (int start = 0; start < kStarts; ++start) {
       const double z = 1 - (2 * start + 1.0) / kStarts, azimuth = 2.399963229728653 * start, r = std::sqrt(1 - z * z);
@@ -173,26 +174,24 @@ TEST(FivePointMartyushev, MissesNoSolutionOfADenseSearch) {
         const Eigen::Vector4d v = svd.matrixV().col(3);
         const Eigen::Vector3d t = v.head<3>() / v(3);
         const bool in_center =
-            &pairs == &kFivePointKinds[0].pairs && (R * p.centers[0] + t - p.centers[0]).norm() < 1e-6;
+            triple && (R * p.centers[pairs[0][0]] + t - p.centers[pairs[0][1]]).norm() < 1e-6 * (1 + t.norm());
         if (in_center) continue;
         ++expected;
         const double distance = poses.empty() ? M_PI : rotationError(nearest(poses, R)->R, R);
-        EXPECT_LE(distance, 1e-9) << "trial " << trial << ", " << poses.size() << " found, singular values "
-                                  << svd.singularValues().transpose();
-        missed += distance > 1e-9;
+        EXPECT_LE(distance, 1e-8) << "trial " << trial << ", " << poses.size() << " found";
       }
     }
   }
   EXPECT_GT(expected, 3 * kKinds * 4);
-  EXPECT_EQ(missed, 0);
 }
 
 TEST(FivePointMartyushev, ThreeRaysOfOnePairDoNotMeetInTheirCamera) {
   SampleSimulator simulator(4);
   for (int i = 0; i < 100; ++i) {
-    const FivePointSample p = fivePointSample(simulator, kIntra32, motionOf(i), 0.1, 1);
+    const CameraPairs& pairs = i % 2 ? kIntra32 : kCross2;
+    const FivePointSample p = fivePointSample(simulator, pairs, motionOf(i), 0.1, 1);
     for (const RelativePose& pose : solveFivePointMartyushev(p.rays, p.prior)) {
-      EXPECT_GT((pose.R * p.centers[0] + pose.t - p.centers[0]).norm(), 1e-7);
+      EXPECT_GT((pose.R * p.centers[pairs[0][0]] + pose.t - p.centers[pairs[0][1]]).norm(), 1e-7);
     }
   }
 }
