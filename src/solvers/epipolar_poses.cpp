@@ -46,7 +46,9 @@ bool refine(const EpipolarSystem& system, const AngleEstimates& estimates, int i
     if (!(std::abs(step) < kLargestStep)) return false;
     half = turned(half, -step);
     if (std::abs(step) < kSettled) {
-      at = evaluate(system, half);
+      // So short a step moves the rows along their slopes.
+      at.rows -= step * at.row_slopes;
+      if (system.identity_root) at.factor = 2 * half.b;
       return true;
     }
   }
@@ -183,7 +185,7 @@ void posesAtRoots(const EpipolarSystem& system, AngleEstimates& estimates, const
     if (count == kMaxSolutions) return;
     roots[count++] = root;
     RelativePose& pose = candidates.poses[candidates.count];
-    candidates.count += poseFromRows(system, root, at.rows, at.cofactors, at.factor, options, pose);
+    candidates.count += poseFromRows(system, root, at.rows, cofactorMatrix(at.rows), at.factor, options, pose);
   };
 
   SystemAtAngle at;
