@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bernstein_roots.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -125,14 +126,10 @@ void isolate(Search& search, const double* b, double lo, double hi) {
   isolate(search, right, middle, hi);
 }
 
-// Bernstein coefficients on [0, 1] of the polynomial with coefficients c[k] · sign^k.
-void bernstein(const double* c, double sign, double* b) {
+// Bernstein coefficients on [0, 1] of four polynomials side by side.
+void toBernstein(std::array<Eigen::Array4d, kDegree + 1>& b) {
   constexpr double kInverseBinomial[kDegree + 1] = {1, 1. / 8, 1. / 28, 1. / 56, 1. / 70, 1. / 56, 1. / 28, 1. / 8, 1};
-  double factor = 1;
-  for (int k = 0; k <= kDegree; ++k) {
-    b[k] = factor * c[k] * kInverseBinomial[k];
-    factor *= sign;
-  }
+  for (int k = 0; k <= kDegree; ++k) b[k] *= kInverseBinomial[k];
   for (int order = 1; order <= kDegree; ++order) {
     for (int k = kDegree; k >= order; --k) b[k] += b[k - 1];
   }
@@ -151,18 +148,26 @@ ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, 
     at_plus += coefficients[k];
     at_minus += k & 1 ? -coefficients[k] : coefficients[k];
   }
+  // Of c[0](x), c[0](-x), c[1](x) and c[1](-x).
+  std::array<Eigen::Array4d, kDegree + 1> b;
+  for (int k = 0; k <= kDegree; ++k) {
+    const double sign = k & 1 ? -1 : 1;
+    b[k] = Eigen::Array4d(c[0][k], sign * c[0][k], c[1][k], sign * c[1][k]);
+  }
+  toBernstein(b);
   for (int chart = 0; chart < 2; ++chart) {
     Search search = {{}, {}, {}, largest_noise, chart == 1, 0, &roots};
     std::copy(c[chart], c[chart] + kDegree + 1, search.c.begin());
     for (int k = 0; k <= degree; ++k) search.noise[k] = noise[chart == 0 ? k : degree - k];
     for (int k = 0; k < kDegree; ++k) search.slope[k] = (k + 1) * search.c[k + 1];
     double positive[kDegree + 1], negative[kDegree + 1];
-    bernstein(c[chart], 1.0, positive);
-    bernstein(c[chart], -1.0, negative);
+    for (int k = 0; k <= kDegree; ++k) {
+      positive[k] = b[k][2 * chart];
+      negative[kDegree - k] = b[k][2 * chart + 1];
+    }
     // At s = ±1 the first chart's values hold for both, so that a root there is found once: s^degree is ±1.
     positive[kDegree] = at_plus;
-    negative[kDegree] = chart == 1 && degree & 1 ? -at_minus : at_minus;
-    std::reverse(negative, negative + kDegree + 1);
+    negative[0] = chart == 1 && degree & 1 ? -at_minus : at_minus;
     isolate(search, negative, -1, 0);
     isolate(search, positive, 0, 1);
   }

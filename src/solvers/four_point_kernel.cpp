@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kRankTolerance = 1e-6;  // below this F is looked at again with all four rows
 constexpr double kVanishing = 1e-14;     // rounding of a determinant of rows of order 1
+constexpr double kFarDepth = 1e3;        // of the origin, relative to 1 m and t, beyond which t is corrected
 constexpr double kLargestSquare = 1e280;
 constexpr int kBlock = 8;  // samples solved together
 

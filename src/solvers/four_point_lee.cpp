@@ -38,20 +38,10 @@ Column columnOf(const EpipolarSystem& system, int column) {
   return result;
 }
 
-Column magnitudes(const Column& column) {
-  Column result;
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 3; ++k) result[i].c[k] = std::abs(column[i].c[k]);
-  }
-  return result;
-}
-
-// `negative` is the sign of the products that a determinant subtracts, -1; with +1 and columns of magnitudes the
-// expansion bounds the sum of the magnitudes of all terms.
-Polynomial<5> minorOf(const Column& a, const Column& b, int row1, int row2, double negative) {
+Polynomial<5> minorOf(const Column& a, const Column& b, int row1, int row2) {
   Polynomial<5> minor;
   addProduct(a[row1], b[row2], 1.0, minor);
-  addProduct(a[row2], b[row1], negative, minor);
+  addProduct(a[row2], b[row1], -1.0, minor);
   return minor;
 }
 
@@ -59,14 +49,13 @@ using Columns = std::array<Column, 4>;
 using Coefficients = std::array<double, 9>;
 
 // Laplace expansion by the 2x2 minors of the first and of the last two columns.
-Coefficients expand(const Columns& columns, double negative) {
+Coefficients expand(const Columns& columns) {
   constexpr int kRows[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
-  constexpr bool kSubtracted[6] = {false, true, false, false, true, false};
+  constexpr double kSign[6] = {1, -1, 1, 1, -1, 1};
   Polynomial<9> sum;
   for (int i = 0; i < 6; ++i) {
-    addProduct(minorOf(columns[0], columns[1], kRows[i][0], kRows[i][1], negative),
-               minorOf(columns[2], columns[3], kRows[i][2], kRows[i][3], negative), kSubtracted[i] ? negative : 1.0,
-               sum);
+    addProduct(minorOf(columns[0], columns[1], kRows[i][0], kRows[i][1]),
+               minorOf(columns[2], columns[3], kRows[i][2], kRows[i][3]), kSign[i], sum);
   }
   Coefficients result;
   for (int k = 0; k < 9; ++k) result[k] = sum.c[k];
@@ -75,14 +64,39 @@ Coefficients expand(const Columns& columns, double negative) {
 
 // Three correspondences of one camera pair: det M has the determinant of their normals, of degree 6, for a factor; the
 // roots of the other factor are those in which the three meet in their camera centre.
-Coefficients expandNormals(const Columns& columns, double negative) {
+Coefficients expandNormals(const Columns& columns) {
   const auto &x = columns[0], &y = columns[1], &z = columns[2];
   Polynomial<7> sum;
-  addProduct(minorOf(x, y, 0, 1, negative), z[2], 1.0, sum);
-  addProduct(minorOf(x, y, 0, 2, negative), z[1], negative, sum);
-  addProduct(minorOf(x, y, 1, 2, negative), z[0], 1.0, sum);
+  addProduct(minorOf(x, y, 0, 1), z[2], 1.0, sum);
+  addProduct(minorOf(x, y, 0, 2), z[1], -1.0, sum);
+  addProduct(minorOf(x, y, 1, 2), z[0], 1.0, sum);
   Coefficients result = {};
   for (int k = 0; k < 7; ++k) result[k] = sum.c[k];
+  return result;
+}
+
+// Sums of the magnitudes in the first rows of a column.
+Quadratic magnitude(const Column& column, int rows) {
+  Quadratic sum;
+  for (int i = 0; i < rows; ++i) {
+    for (int k = 0; k < 3; ++k) sum.c[k] += std::abs(column[i].c[k]);
+  }
+  return sum;
+}
+
+// Rounding errors of the coefficients of a determinant: all its terms are among those of the product of the columns'
+// magnitudes.
+Coefficients roundingOf(const Columns& columns, bool normals) {
+  constexpr double kRounding = 2e-16;
+  const int rows = normals ? 3 : 4;
+  Polynomial<5> first;
+  addProduct(magnitude(columns[0], rows), magnitude(columns[1], rows), kRounding, first);
+  Polynomial<7> three;
+  addProduct(first, magnitude(columns[2], rows), 1.0, three);
+  Polynomial<9> all;
+  addProduct(three, normals ? Quadratic{{1, 0, 0}} : magnitude(columns[3], rows), 1.0, all);
+  Coefficients result;
+  for (int k = 0; k < 9; ++k) result[k] = all.c[k];
   return result;
 }
 
@@ -91,15 +105,10 @@ Columns columnsOf(const EpipolarSystem& system) {
 }
 
 ProjectiveRoots rootsOfDeterminant(const EpipolarSystem& system) {
-  constexpr double kRounding = 1e-15;  // of a coefficient, relative to the sum of the magnitudes of its terms
-  const auto expansion = system.three_and_one ? expandNormals : expand;
-  const int degree = system.three_and_one ? 6 : system.identity_root ? 7 : 8;
-  Columns columns = columnsOf(system);
-  const Coefficients coefficients = expansion(columns, -1.0);
-  for (Column& column : columns) column = magnitudes(column);
-  Coefficients noise = expansion(columns, 1.0);
-  for (double& value : noise) value *= kRounding;
-  return realRootsByBernstein(coefficients, degree, noise);
+  const Columns columns = columnsOf(system);
+  const Coefficients noise = roundingOf(columns, system.three_and_one);
+  if (system.three_and_one) return realRootsByBernstein(expandNormals(columns), 6, noise);
+  return realRootsByBernstein(expand(columns), system.identity_root ? 7 : 8, noise);
 }
 
 // The same prior with the yaw of the first aligned frame such that the yaw between the frames is zero where the body
@@ -144,7 +153,7 @@ std::array<double, 9> leePolynomial(const std::array<RayCorrespondence, 4>& samp
   EpipolarSystem system;
   if (buildEpipolarSystem(sample, prior, {}, system) != SolverStatus::kOk) return {};
   system.identity_root = false;
-  return expand(columnsOf(system), -1.0);
+  return expand(columnsOf(system));
 }
 
 }  // namespace multicam_egomotion

@@ -3,6 +3,7 @@
 #include "four_point_translation.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 
@@ -46,6 +47,22 @@ bool translationFromAllRows(const AlignedRays& rays, double c, double s, double*
   if (sigma(2) <= kSmallestNormal * sigma(0)) return false;
   translation = -size * normals.solve(rows.col(3));
   return translation.allFinite();
+}
+
+void correctTranslation(const AlignedRays& rays, double c, double s, double* t) {
+  constexpr double kWeak = 1e-8;  // relative singular value of the normals in whose direction t is left alone
+  Eigen::Matrix3d R;
+  R << c, -s, 0, s, c, 0, 0, 0, 1;
+  Eigen::Map<Eigen::Vector3d> translation(t);
+  Eigen::Matrix<double, 4, 3> normals;
+  Eigen::Vector4d residuals;
+  for (int i = 0; i < 4; ++i) {
+    normals.row(i) = (R * rays.x1.col(i)).cross(rays.x2.col(i));
+    residuals(i) = normals.row(i).dot(translation + R * rays.p1.col(i) - rays.p2.col(i));
+  }
+  Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 4, 3>> qr(normals);
+  qr.setThreshold(kWeak);
+  translation -= qr.solve(residuals);
 }
 
 }  // namespace multicam_egomotion
