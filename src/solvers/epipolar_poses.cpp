@@ -209,9 +209,10 @@ void posesAtRoots(const EpipolarSystem& system, AngleEstimates& estimates, const
       HalfAngle half = pair[k];
       if (found == 2 && refine(system, both, k, half, at)) {
         addRoot(half, at);
-      } else {
-        addRoot(pair[k], evaluate(system, pair[k]));
+        continue;
       }
+      at = evaluate(system, pair[k]);
+      if (std::abs(at.value) <= roundingError(system, at)) addRoot(pair[k], at);
     }
   }
 }

@@ -6,11 +6,13 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kSmallestNormal = 1e-14;  // relative singular value of the normals without which t is not finite
+constexpr double kLargestCorrection = 1e-7;  // [rad]
+constexpr double kSmallestNormal = 1e-14;    // relative singular value of the normals without which t is not finite
 
 }  // namespace
 
@@ -49,20 +51,26 @@ bool translationFromAllRows(const AlignedRays& rays, double c, double s, double*
   return translation.allFinite();
 }
 
-void correctTranslation(const AlignedRays& rays, double c, double s, double* t) {
-  constexpr double kWeak = 1e-8;  // relative singular value of the normals in whose direction t is left alone
+double correctPose(const AlignedRays& rays, double c, double s, double* t) {
+  constexpr double kWeak = 1e-9;  // relative pivot below which a direction is left alone
   Eigen::Matrix3d R;
   R << c, -s, 0, s, c, 0, 0, 0, 1;
   Eigen::Map<Eigen::Vector3d> translation(t);
-  Eigen::Matrix<double, 4, 3> normals;
+  Eigen::Matrix4d jacobian;
   Eigen::Vector4d residuals;
   for (int i = 0; i < 4; ++i) {
-    normals.row(i) = (R * rays.x1.col(i)).cross(rays.x2.col(i));
-    residuals(i) = normals.row(i).dot(translation + R * rays.p1.col(i) - rays.p2.col(i));
+    const Eigen::Vector3d x1 = R * rays.x1.col(i), p1 = R * rays.p1.col(i), x2 = rays.x2.col(i);
+    const Eigen::Vector3d m = x1.cross(x2), apart = translation + p1 - rays.p2.col(i);
+    const Eigen::Vector3d turned = Eigen::Vector3d::UnitZ().cross(x1).cross(x2);
+    residuals(i) = m.dot(apart);
+    jacobian.row(i) << m.transpose(), turned.dot(apart) + m.dot(Eigen::Vector3d::UnitZ().cross(p1));
   }
-  Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 4, 3>> qr(normals);
+  Eigen::ColPivHouseholderQR<Eigen::Matrix4d> qr(jacobian);
   qr.setThreshold(kWeak);
-  translation -= qr.solve(residuals);
+  const Eigen::Vector4d step = -qr.solve(residuals);
+  if (!(std::abs(step(3)) < kLargestCorrection)) return 0;
+  translation += step.head<3>();
+  return step(3);
 }
 
 }  // namespace multicam_egomotion

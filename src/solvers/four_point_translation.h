@@ -22,7 +22,8 @@ struct AlignedRays {
 /// rank 2. Returns false where not even the direction is determined.
 bool translationFromAllRows(const AlignedRays& rays, double c, double s, double* t, bool& scale_observable);
 
-/// Moves t [m] by least squares to where all four constraints are met to rounding.
-void correctTranslation(const AlignedRays& rays, double c, double s, double* t);
+/// One Newton step of t [m] and the angle on the four constraints themselves, for a pose that meets them but for
+/// rounding. Returns the step of the angle [rad].
+double correctPose(const AlignedRays& rays, double c, double s, double* t);
 
 }  // namespace multicam_egomotion
