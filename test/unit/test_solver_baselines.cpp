@@ -190,7 +190,7 @@ TEST(Baselines, ReturnTheSetOfTheReference) {
 
 TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
   const int trials = solverTrials(400);
-  int undecided = 0, samples = 0;
+  int undecided = 0, different = 0, samples = 0;
   for (SampleKind kind : kKinds) {
     SampleSimulator simulator(5);
     for (int trial = 0; trial < trials; ++trial, ++samples) {
@@ -213,13 +213,18 @@ TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
         ++undecided;
         continue;
       }
-      ASSERT_EQ(found.size(), reference.angles.size());
+      if (found.size() != reference.angles.size()) {
+        ++different;
+        continue;
+      }
       for (size_t i = 0; i < found.size(); ++i) {
         EXPECT_LE(distanceToNearest(found, reference.angles[i]), tolerance(reference.slopes[i]));
       }
     }
   }
+  std::cout << samples << " samples, " << undecided << " undecided, " << different << " with another count\n";
   EXPECT_LE(undecided, samples / 100);
+  EXPECT_LE(different, samples / 100000);  // the closed form loses a pair whose halves nearly cancel
 }
 
 TEST(Baselines, ErrorOfLiuGrowsWithTheSquareOfTheAngle) {
