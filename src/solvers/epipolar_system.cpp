@@ -227,29 +227,29 @@ SystemAtAngle evaluate(const EpipolarSystem& system, const HalfAngle& half) {
   const double c = a * a - b * b, s = 2 * a * b;
   SystemAtAngle at;
   at.rows = c * system.c + (s * system.s + system.k);
-  Eigen::Matrix4d slopes = c * system.s - s * system.c;
+  at.row_slopes = c * system.s - s * system.c;
   at.factor = 1;
   if (system.identity_root) {
     // sinθ B - (1 - cosθ) A = 2 b (a B - b A)
     at.factor = 2 * b;
     at.rows.col(3) = a * system.s.col(3) - b * system.c.col(3);
-    slopes.col(3) = -0.5 * (b * system.s.col(3) + a * system.c.col(3));
+    at.row_slopes.col(3) = -0.5 * (b * system.s.col(3) + a * system.c.col(3));
   }
-  at.cofactors = cofactorMatrix(at.rows);
   if (system.three_and_one) {
     const Eigen::Matrix3d cofactors = normalCofactors(at.rows);
     at.value = at.rows.row(0).head<3>().dot(cofactors.col(0));
-    at.slope = slopes.topLeftCorner<3, 3>().cwiseProduct(cofactors.transpose()).sum();
+    at.slope = at.row_slopes.topLeftCorner<3, 3>().cwiseProduct(cofactors.transpose()).sum();
   } else {
-    at.value = at.rows.col(0).dot(at.cofactors.col(0));
-    at.slope = slopes.cwiseProduct(at.cofactors).sum();
+    const Eigen::Matrix4d cofactors = cofactorMatrix(at.rows);
+    at.value = at.rows.col(0).dot(cofactors.col(0));
+    at.slope = at.row_slopes.cwiseProduct(cofactors).sum();
   }
   return at;
 }
 
 double roundingError(const EpipolarSystem& system, const SystemAtAngle& at) {
   const double cofactors =
-      system.three_and_one ? normalCofactors(at.rows).cwiseAbs().sum() : at.cofactors.cwiseAbs().sum();
+      system.three_and_one ? normalCofactors(at.rows).cwiseAbs().sum() : cofactorMatrix(at.rows).cwiseAbs().sum();
   return 4 * std::numeric_limits<double>::epsilon() * cofactors;
 }
 

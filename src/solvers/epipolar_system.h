@@ -56,7 +56,7 @@ SolverStatus buildEpipolarSystem(const std::array<RayCorrespondence, 4>& sample,
 /// M at one angle. Of a system with the identity root the last column is divided by `factor` = 2 sin(θ / 2).
 struct SystemAtAngle {
   Eigen::Matrix4d rows;
-  Eigen::Matrix4d cofactors;
+  Eigen::Matrix4d row_slopes;  ///< derivative of `rows` by θ
   double factor;
   double value;  ///< zero at a solution: det of `rows`, or of the normals of rows 0 to 2 (three_and_one)
   double slope;  ///< derivative of `value` by θ

@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kRankTolerance = 1e-6;  // below this F is looked at again with all four rows
 constexpr double kVanishing = 1e-14;     // rounding of a determinant of rows of order 1
+constexpr double kFarDepth = 1e3;        // of the origin, relative to 1 m and t, beyond which the pose is corrected
+constexpr double kParallel = 2e-4;       // sine between the rows, or less, below which it is
 constexpr double kLargestSquare = 1e280;
 constexpr int kBlock = 8;  // samples solved together
 

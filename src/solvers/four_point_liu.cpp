@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "epipolar_poses.h"
 #include "epipolar_system.h"

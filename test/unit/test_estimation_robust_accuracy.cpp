@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "robust_trials.h"
+#include "solver_trials.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -41,10 +44,11 @@ TEST(RobustAccuracy, PureTranslationWithoutCrossCameraLeavesScaleOpen) {
   TrialSetup setup;
   setup.outliers = 0.3;
   setup.max_rotation_deg = 0.0;
+  const unsigned trials_per_motion = solverTrials(40);
   int trials = 0, open = 0, direction = 0;
   for (const Motion motion : {Motion::kRandom, Motion::kForward, Motion::kSideways}) {
     setup.motion = motion;
-    for (unsigned seed = 1; seed <= 40; ++seed, ++trials) {
+    for (unsigned seed = 1; seed <= trials_per_motion; ++seed, ++trials) {
       const RobustTrial trial = makeRobustTrial(setup, seed);
       const RobustEstimate found = estimate<FourPointVertical>(trial.set(), trial.vertical, {}, {}, seed);
       ASSERT_TRUE(found.success);
@@ -52,8 +56,9 @@ TEST(RobustAccuracy, PureTranslationWithoutCrossCameraLeavesScaleOpen) {
       direction += directionError(found.t, trial.t) < 0.1 && rotationError(found.R, trial.R) < 0.01;
     }
   }
-  EXPECT_GE(open, trials - 1);
-  EXPECT_GE(direction, trials - 2);
+  std::cout << trials << " trials, scale open in " << open << ", direction right in " << direction << "\n";
+  EXPECT_GE(open, 0.99 * trials);
+  EXPECT_GE(direction, 0.98 * trials);
 }
 
 TEST(RobustAccuracy, ScaleIsSeenWithRotationOrCrossCameraCorrespondences) {

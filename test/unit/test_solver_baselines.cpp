@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The baselines 4pt-lee, 4pt-sweeney and 4pt-liu against a reference in extended precision that expands the classical
-// determinant by permutations, and against 4pt-vertical and 4pt-axis.
+// determinant by permutations, and against 4pt-vertical and 4pt-axis. MULTICAM_EGOMOTION_SOLVER_TRIALS: samples per
+// class (100000 for the figures of the documentation).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "multicam_egomotion/solvers/four_point_sweeney.h"
 #include "multicam_egomotion/solvers/four_point_vertical.h"
 #include "solver_samples.h"
+#include "solver_trials.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -87,6 +90,10 @@ SimulatedSample pureYaw(SampleSimulator& simulator, SampleKind kind, Motion moti
   return s;
 }
 
+/// What a root may be away from the reference [rad]: more than 1e-9 only where the determinant is so flat that its
+/// rounding moves the root as far.
+double tolerance(double slope) { return std::max(1e-9, 3e-18 / slope); }
+
 VerticalPrior frames(Solver solver, const SimulatedSample& s) {
   if (solver == Solver::kLee) return s.vertical;
   return {rotationToZ(s.axis.axis), rotationToZ(s.axis.axis)};
@@ -94,13 +101,13 @@ VerticalPrior frames(Solver solver, const SimulatedSample& s) {
 
 TEST(Baselines, FindTheTruthToRounding) {
   const double ranges[][2] = {{0, 0.3}, {0, 10}, {0, 60}, {179, 180}, {180, 180}};
-  constexpr int kTrials = 200;
+  const int trials = std::max(1, solverTrials(3000) / 5);
   for (Solver solver : kExact) {
     for (const auto& range : ranges) {
       std::vector<double> errors, translation_errors;
       for (SampleKind kind : kKinds) {
         SampleSimulator simulator(3);
-        for (int i = 0; i < 3 * kTrials; ++i) {
+        for (int i = 0; i < trials; ++i) {
           const double min = range[0] * kDegree, max = range[1] * kDegree;
           const SimulatedSample s = i % 2 ? simulator.sample(kind, kMotions[i % 3], min, max)
                                           : pureYaw(simulator, kind, kMotions[i % 3], min, max);
@@ -117,9 +124,8 @@ TEST(Baselines, FindTheTruthToRounding) {
       const size_t n = errors.size();
       SCOPED_TRACE(testing::Message() << "solver " << static_cast<int>(solver) << " up to " << range[1] << " deg");
       EXPECT_LE(errors[n / 2], std::pow(10, -14.5));
-      EXPECT_LE(errors[n * 999 / 1000], std::pow(10, -11.2));
-      EXPECT_LE(std::count_if(errors.begin(), errors.end(), [](double error) { return error > 1e-6; }),
-                static_cast<long>(n / 1000));
+      EXPECT_LE(errors[n * 999 / 1000], 1e-12);
+      EXPECT_LE(errors.back(), 1e-8);
       EXPECT_LE(translation_errors[n / 2], 1e-9);
     }
   }
@@ -127,13 +133,14 @@ TEST(Baselines, FindTheTruthToRounding) {
 
 TEST(Baselines, ReturnTheSetOfTheReference) {
   const double ranges[][2] = {{0, 0.3}, {0, 10}, {0, 60}, {179, 180}, {180, 180}};
-  constexpr int kTrials = 10;
+  const int trials = std::max(1, solverTrials(300) / 5);
   int undecided = 0, samples = 0;
+  double largest_residual = 0;
   for (Solver solver : kExact) {
     for (const auto& range : ranges) {
       for (SampleKind kind : kKinds) {
         SampleSimulator simulator(4);
-        for (int trial = 0; trial < 6 * kTrials; ++trial) {
+        for (int trial = 0; trial < trials; ++trial) {
           const bool yaw = trial % 2;
           const double min = range[0] * kDegree, max = range[1] * kDegree;
           const SimulatedSample s = yaw ? pureYaw(simulator, kind, kMotions[trial % 3], min, max)
@@ -149,7 +156,10 @@ TEST(Baselines, ReturnTheSetOfTheReference) {
           ASSERT_LE(poses.size(), 6u);
           std::vector<double> found;
           for (const RelativePose& pose : poses) {
-            EXPECT_LE(residual(s, pose), 1e-12);
+            if (pose.scale_observable) {
+              largest_residual = std::max(largest_residual, residual(s, pose));
+              EXPECT_LE(residual(s, pose), 1e-12);
+            }
             EXPECT_LE((pose.R.transpose() * pose.R - Eigen::Matrix3d::Identity()).norm(), 1e-14);
             found.push_back(yawBetween(aligned, pose.R));
           }
@@ -162,24 +172,28 @@ TEST(Baselines, ReturnTheSetOfTheReference) {
             continue;
           }
           ASSERT_EQ(found.size(), reference.angles.size());
-          for (double angle : found) EXPECT_LE(distanceToNearest(reference.angles, angle), 1e-8);
-          for (double angle : reference.angles) EXPECT_LE(distanceToNearest(found, angle), 1e-8);
+          for (size_t i = 0; i < found.size(); ++i) {
+            EXPECT_LE(distanceToNearest(found, reference.angles[i]), tolerance(reference.slopes[i]));
+          }
           // The degree-6 solvers find the same.
           const Poses ours = solve(solver == Solver::kLee ? Solver::kVertical : Solver::kAxis, s);
           ASSERT_EQ(ours.size(), poses.size());
-          for (const RelativePose& pose : ours) EXPECT_LE(errorOfNearest(poses, pose.R), 1e-8);
+          const double flattest = *std::min_element(reference.slopes.begin(), reference.slopes.end());
+          for (const RelativePose& pose : ours) EXPECT_LE(errorOfNearest(poses, pose.R), tolerance(flattest));
         }
       }
     }
   }
+  std::cout << samples << " samples, " << undecided << " undecided, largest residual " << largest_residual << "\n";
   EXPECT_LE(undecided, samples / 100);
 }
 
 TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
-  int undecided = 0, samples = 0;
+  const int trials = solverTrials(400);
+  int undecided = 0, different = 0, samples = 0;
   for (SampleKind kind : kKinds) {
     SampleSimulator simulator(5);
-    for (int trial = 0; trial < 400; ++trial, ++samples) {
+    for (int trial = 0; trial < trials; ++trial, ++samples) {
       const bool yaw = trial % 2;
       SimulatedSample s = yaw ? pureYaw(simulator, kind, kMotions[trial % 3], 0, 20 * kDegree)
                               : simulator.sample(kind, kMotions[trial % 3], 0, 20 * kDegree);
@@ -199,28 +213,37 @@ TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
         ++undecided;
         continue;
       }
-      ASSERT_EQ(found.size(), reference.angles.size());
-      for (double angle : found) EXPECT_LE(distanceToNearest(reference.angles, angle), 1e-8);
-      for (double angle : reference.angles) EXPECT_LE(distanceToNearest(found, angle), 1e-8);
+      if (found.size() != reference.angles.size()) {
+        ++different;
+        continue;
+      }
+      for (size_t i = 0; i < found.size(); ++i) {
+        EXPECT_LE(distanceToNearest(found, reference.angles[i]), tolerance(reference.slopes[i]));
+      }
     }
   }
+  std::cout << samples << " samples, " << undecided << " undecided, " << different << " with another count\n";
   EXPECT_LE(undecided, samples / 100);
+  EXPECT_LE(different, samples / 100000);  // the closed form loses a pair whose halves nearly cancel
 }
 
 TEST(Baselines, ErrorOfLiuGrowsWithTheSquareOfTheAngle) {
+  const int trials = solverTrials(1000);
   for (SampleKind kind : kKinds) {
     double median[2];
     for (int i = 0; i < 2; ++i) {
       const double angle = i == 0 ? kDegree : 10 * kDegree;
       SampleSimulator simulator(6);
       std::vector<double> errors;
-      for (int trial = 0; trial < 1000; ++trial) {
+      for (int trial = 0; trial < trials; ++trial) {
         const SimulatedSample s = simulator.sample(kind, kMotions[trial % 3], angle, angle);
         errors.push_back(errorOfNearest(solve(Solver::kLiu, s), s.R));
       }
-      std::nth_element(errors.begin(), errors.begin() + 500, errors.end());
-      median[i] = errors[500];
+      std::nth_element(errors.begin(), errors.begin() + trials / 2, errors.end());
+      median[i] = errors[trials / 2];
     }
+    std::cout << "class " << static_cast<int>(kind) << ": median error of 4pt-liu at 10 deg is "
+              << median[1] / median[0] << " times that at 1 deg\n";
     EXPECT_LT(50 * median[0], median[1]) << static_cast<int>(kind);
     EXPECT_LT(median[0], 0.1 * kDegree);
     EXPECT_GT(median[1], 1e-4);
@@ -249,12 +272,13 @@ TEST(Baselines, LeePolynomialIsTheDepthPolynomialTimesOnePlusSSquared) {
 }
 
 TEST(Baselines, PureTranslationGivesDirectionAndNoScale) {
+  const int samples = solverTrials(500);
   SampleSimulator simulator(8);
   int right = 0, trials = 0;
   for (Solver solver : kBaselines) {
     for (SampleKind kind :
          {SampleKind::kIntra22, SampleKind::kIntra31, SampleKind::kIntra211, SampleKind::kIntra1111}) {
-      for (int i = 0; i < 500; ++i, ++trials) {
+      for (int i = 0; i < samples; ++i, ++trials) {
         const SimulatedSample s = simulator.sample(kind, kMotions[i % 3], 0, 0);
         const Poses poses = solve(solver, s);
         ASSERT_FALSE(poses.empty());
@@ -265,13 +289,15 @@ TEST(Baselines, PureTranslationGivesDirectionAndNoScale) {
       }
     }
   }
+  std::cout << right << " of " << trials << " right\n";
   EXPECT_GE(right, trials * 0.999);
 }
 
 TEST(Baselines, ScaleIsObservableInRotationAndAcrossCameras) {
+  const int samples = solverTrials(1000);
   SampleSimulator simulator(9);
   int flagged = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < samples; ++i) {
     const SimulatedSample s = simulator.sample(kKinds[i % 5], Motion::kRandom, kDegree, 20 * kDegree);
     const SimulatedSample cross = simulator.sample(SampleKind::kCross, Motion::kRandom, 0, 0);
     for (Solver solver : kExact) {
@@ -279,7 +305,8 @@ TEST(Baselines, ScaleIsObservableInRotationAndAcrossCameras) {
       flagged += !nearest(solve(solver, cross), cross.R).scale_observable;
     }
   }
-  EXPECT_LE(flagged, 3);
+  std::cout << flagged << " of " << 4 * samples << " flagged\n";
+  EXPECT_LE(flagged, 0.001 * 4 * samples);
 }
 
 TEST(Baselines, StandingStillIsIdentityWithoutScale) {

@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// 4pt-vertical and 4pt-axis against the true motion and against a reference in
-// extended precision. MULTICAM_EGOMOTION_SOLVER_TRIALS: samples per motion
-// (1000000 for the figures of the documentation); the comparison with the
-// reference takes a hundredth of it per class.
+// 4pt-vertical and 4pt-axis against the true motion and against a reference in extended precision.
+// MULTICAM_EGOMOTION_SOLVER_TRIALS: samples per motion (1000000 for the figures of the documentation) or, beside the
+// reference, per class (100000).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <random>
@@ -20,6 +18,7 @@
 #include "multicam_egomotion/solvers/four_point_axis.h"
 #include "multicam_egomotion/solvers/four_point_vertical.h"
 #include "solver_samples.h"
+#include "solver_trials.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -32,11 +31,6 @@ constexpr double kRanges[][2] = {{0, 0.3}, {0, 10}, {0, 60}, {179, 180}, {180, 1
 
 enum class Solver { kVertical, kAxis };
 constexpr Solver kSolvers[] = {Solver::kVertical, Solver::kAxis};
-
-int trialsPerMotion() {
-  const char* trials = std::getenv("MULTICAM_EGOMOTION_SOLVER_TRIALS");
-  return trials != nullptr ? std::atoi(trials) : 20000;
-}
 
 PoseCandidates<6> solve(Solver solver, const SimulatedSample& s) {
   return solver == Solver::kVertical ? solveFourPointVertical(s.rays, s.vertical) : solveFourPointAxis(s.rays, s.axis);
@@ -67,7 +61,7 @@ void add(const SimulatedSample& s, const PoseCandidates<6>& poses, Errors& error
 }
 
 TEST(FourPointAccuracy, SmallRotationsOfEveryMotion) {
-  const int trials = trialsPerMotion();
+  const int trials = solverTrials(20000);
   for (Solver solver : kSolvers) {
     for (Motion motion : kMotions) {
       SampleSimulator simulator(31 + static_cast<unsigned>(motion));
@@ -88,7 +82,7 @@ TEST(FourPointAccuracy, SmallRotationsOfEveryMotion) {
 }
 
 TEST(FourPointAccuracy, AnyRotation) {
-  const int trials = std::max(1, trialsPerMotion() / 20);
+  const int trials = std::max(1, solverTrials(15000) / 15);
   for (Solver solver : kSolvers) {
     for (const auto& range : kRanges) {
       Errors errors;
@@ -141,13 +135,14 @@ double conditioning(const SimulatedSample& s, double angle, bool three_and_one, 
 }
 
 TEST(FourPointAccuracy, ReturnsTheSetOfTheReference) {
-  const int trials = std::max(1, trialsPerMotion() / 600);
+  const int trials = std::max(1, solverTrials(1000) / 5);
   int undecided = 0, ill_conditioned = 0, samples = 0;
+  double largest_residual = 0;
   for (Solver solver : kSolvers) {
     for (const auto& range : kRanges) {
       for (SampleKind kind : kKinds) {
         SampleSimulator simulator(4);
-        for (int i = 0; i < 6 * trials; ++i) {
+        for (int i = 0; i < trials; ++i) {
           SimulatedSample s = simulator.sample(kind, kMotions[i % 3], range[0] * kDegree, range[1] * kDegree);
           // Every other sample turns about its vertical: the tilt is the same
           // in both frames.
@@ -162,7 +157,10 @@ TEST(FourPointAccuracy, ReturnsTheSetOfTheReference) {
           ASSERT_EQ(poses.status, SolverStatus::kOk);
           std::vector<double> found;
           for (const RelativePose& pose : poses) {
-            EXPECT_LE(residual(s, pose), 1e-12);
+            if (pose.scale_observable) {
+              largest_residual = std::max(largest_residual, residual(s, pose));
+              EXPECT_LE(residual(s, pose), 1e-12);
+            }
             EXPECT_LE((pose.R.transpose() * pose.R - Eigen::Matrix3d::Identity()).norm(), 1e-14);
             const double angle = yawBetween(s.vertical, pose.R);
             EXPECT_GT(distanceToNearest(found, angle), 1e-9) << "twice";
@@ -184,6 +182,8 @@ TEST(FourPointAccuracy, ReturnsTheSetOfTheReference) {
       }
     }
   }
+  std::cout << samples << " samples, " << undecided << " undecided, " << ill_conditioned
+            << " with an ill-conditioned root, largest residual " << largest_residual << "\n";
   EXPECT_LE(undecided, samples / 100);
   EXPECT_LE(ill_conditioned, samples / 100);
 }
