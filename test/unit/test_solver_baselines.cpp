@@ -224,7 +224,7 @@ TEST(Baselines, LiuReturnsTheRootsOfItsQuartic) {
   }
   std::cout << samples << " samples, " << undecided << " undecided, " << different << " with another count\n";
   EXPECT_LE(undecided, samples / 100);
-  EXPECT_LE(different, samples / 100000);  // the closed form loses a pair whose halves nearly cancel
+  EXPECT_LE(different, samples / 100000);  // the closed form may lose a pair
 }
 
 TEST(Baselines, ErrorOfLiuGrowsWithTheSquareOfTheAngle) {
