@@ -26,7 +26,7 @@ target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_eg
 target_compile_options(test_fault_table PRIVATE -O1)
 precompile_headers(ros_tests test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-foreach(recording simulated surround recorded)
+foreach(recording simulated recorded)
   add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")

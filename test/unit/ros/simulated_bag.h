@@ -18,7 +18,7 @@
 
 namespace multicam_egomotion {
 
-/// Writes a simulation of a rig (radtan or rational) as a driver would record it: images, CameraInfo, IMU and TF.
+/// Writes a simulation of a stereo rig (radtan) as a driver would record it: images, CameraInfo, IMU and TF.
 class SimulatedBag {
  public:
   SimulatedBag(const std::string& path, const Simulator& simulator)
@@ -75,10 +75,9 @@ class SimulatedBag {
     info.header = message.header;
     info.height = message.height;
     info.width = message.width;
-    const bool rational = model.distortion() == Distortion::kRationalPolynomial;
-    info.distortion_model = rational ? "rational_polynomial" : "plumb_bob";
+    info.distortion_model = "plumb_bob";
     info.D = model.coefficients();
-    info.D.resize(rational ? 8 : 5, 0.0);
+    info.D.resize(5, 0.0);
     info.K = {model.fx(), 0.0, model.cx(), 0.0, model.fy(), model.cy(), 0.0, 0.0, 1.0};
     info.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     info.P = {model.fx(), 0.0, model.cx(), 0.0, 0.0, model.fy(), model.cy(), 0.0, 0.0, 0.0, 1.0, 0.0};
