@@ -18,6 +18,7 @@ constexpr std::int64_t kLatestSamples = 1000000000;  // samples that come later 
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
 constexpr double kDisplacementModelShare = 0.005;  // of the distance
+constexpr double kRefusedMemory = 20.0;            // frames over which the share of the refused ones is taken
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
@@ -123,7 +124,8 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Matrix3d displacement_covariance =
       propagated(to_imu, vision.covariance) +
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
-  state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  const bool accepted = state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  refused_share_ += ((accepted ? 0.0 : 1.0) - refused_share_) / kRefusedMemory;
 }
 
 Eigen::Vector3d InertialMotion::up() const {

@@ -134,5 +134,17 @@ TEST_F(SensorInputTest, NamesACameraThatIsMissingOrLate) {
   EXPECT_TRUE(input_.faults().empty());
 }
 
+TEST_F(SensorInputTest, SaysThatImuAndImagesAreApart) {
+  const std::string why = ": silent, late, or clocks apart?";
+  steady(0, 1000);
+  EXPECT_TRUE(input_.faults().empty());
+  for (int ms = 1000; ms <= 1490; ms += 50) image(0, ms), image(1, ms);
+  EXPECT_TRUE(says("IMU: newest sample 0.5 s behind the images" + why)) << input_.faults().size();
+  steady(1450, 1550);
+  EXPECT_FALSE(says("IMU: newest sample 0.5 s behind the images" + why));
+  for (int ms = 1550; ms < 8000; ms += 10) imu(ms);
+  EXPECT_TRUE(says("images: newest 6.5 s behind the IMU" + why));
+}
+
 }  // namespace
 }  // namespace multicam_egomotion

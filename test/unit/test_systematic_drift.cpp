@@ -44,6 +44,13 @@ TEST(SystematicDrift, WhatTheTiltDidBeforeItWasKnownStays) {
   EXPECT_GT(symmetricEigenvalues(drift.covariance())[0], -1e-12);
 }
 
+TEST(SystematicDrift, APoorScaleAddsUp) {
+  SystematicDrift drift;
+  for (int i = 0; i <= 10; ++i) drift.follow(Eigen::Vector3d(i, 0, 0), 0.0, i > 5 ? 0.1 : 0.0);
+  const double well = std::pow(5 * 0.005, 2), poor = std::pow(5 * 0.1, 2);
+  EXPECT_NEAR(drift.covariance()(0, 0), well + poor + 2.0 * well, 1e-9);  // what was wrong before still is
+}
+
 // Mean of the accumulated position's NEES per degree of freedom from the first second on.
 double accumulatedNees(const std::string& name, double seconds) {
   SimulationOptions options;
