@@ -40,7 +40,8 @@ if(MULTICAM_EGOMOTION_ROS)
     get_filename_component(name ${file} NAME_WE)
     add_test(NAME ${name} COMMAND ${PYTHON_EXECUTABLE} -m unittest -v ${name}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
-    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 600)
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 600
+      ENVIRONMENT PAPER_EXPERIMENTS=$<TARGET_FILE:paper_experiments>)
   endforeach()
 endif()
 
