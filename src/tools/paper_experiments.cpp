@@ -3,6 +3,7 @@
 
 // Every table and figure of the paper's section V, one CSV file each.
 
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <exception>
 #include <filesystem>

@@ -26,11 +26,17 @@ void trackImages(KittiSequence* sequence, std::uint64_t seed) {
   });
 }
 
+constexpr double kNoRotation = 1e-6;  // what the digits of the poses resolve [rad]
+
 SolverPriors priorsOf(const KittiSequence& sequence, std::size_t pair) {
   SolverPriors priors;
   priors.vertical = verticalPriorFromUp(sequence.up(pair), sequence.up(pair + 1));
   priors.axis.axis = logSO3(sequence.motion(pair).linear());
   priors.angle = priors.axis.axis.norm();
+  if (priors.angle < kNoRotation) {
+    priors.axis.axis.setZero();
+    priors.angle = 0.0;
+  }
   return priors;
 }
 
