@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "../unit/five_point_samples.h"
 #include "../unit/solver_samples.h"
+#include "multicam_egomotion/solvers/five_point_martyushev.h"
 #include "multicam_egomotion/solvers/four_point_axis.h"
 #include "multicam_egomotion/solvers/four_point_kernel.h"
 #include "multicam_egomotion/solvers/four_point_lee.h"
@@ -33,11 +35,10 @@ std::vector<SimulatedSample> problems(SampleKind kind) {
   return samples;
 }
 
-template <typename Solve>
-void solveAll(benchmark::State& state, SampleKind kind, const Solve& solve) {
-  const std::vector<SimulatedSample> samples = problems(kind);
+template <typename Sample, typename Solve>
+void solveEach(benchmark::State& state, const std::vector<Sample>& samples, const Solve& solve) {
   double solutions = 0, failures = 0;
-  for (const SimulatedSample& sample : samples) {
+  for (const Sample& sample : samples) {
     const auto poses = solve(sample);
     solutions += poses.size();
     failures += std::none_of(poses.begin(), poses.end(),
@@ -51,6 +52,11 @@ void solveAll(benchmark::State& state, SampleKind kind, const Solve& solve) {
   }
   state.counters["solutions"] = solutions / kProblems;
   state.counters["failures"] = failures / kProblems;
+}
+
+template <typename Solve>
+void solveAll(benchmark::State& state, SampleKind kind, const Solve& solve) {
+  solveEach(state, problems(kind), solve);
 }
 
 void vertical(benchmark::State& state, SampleKind kind) {
@@ -71,6 +77,15 @@ void sweeney(benchmark::State& state, SampleKind kind) {
 
 void liu(benchmark::State& state, SampleKind kind) {
   solveAll(state, kind, [](const SimulatedSample& s) { return solveFourPointLiu(s.rays, s.vertical); });
+}
+
+void martyushev(benchmark::State& state, const FivePointKind& kind) {
+  SampleSimulator simulator(1);
+  std::vector<FivePointSample> samples;
+  for (int i = 0; i < kProblems; ++i) {
+    samples.push_back(fivePointSample(simulator, kind.pairs, Motion::kRandom, 0, 10 * M_PI / 180));
+  }
+  solveEach(state, samples, [](const FivePointSample& s) { return solveFivePointMartyushev(s.rays, s.prior); });
 }
 
 std::vector<std::array<double, 7>> polynomials() {
@@ -135,6 +150,10 @@ const bool kRegistered = [] {
       const std::string name = std::string("solve/") + solver.name + "/" + sample.name;
       benchmark::RegisterBenchmark(name.c_str(), solver.run, sample.kind);
     }
+  }
+  for (const FivePointKind& kind : kFivePointKinds) {
+    const std::string name = std::string("solve/5pt-martyushev/") + kind.name;
+    benchmark::RegisterBenchmark(name.c_str(), martyushev, kind)->Iterations(kProblems);
   }
   return true;
 }();

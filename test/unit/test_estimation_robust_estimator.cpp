@@ -110,6 +110,19 @@ TEST(RobustEstimator, AxisSolverWithTheGyroscopesRotation) {
   }
 }
 
+TEST(RobustEstimator, FivePointSolverWithTheGyroscopesAngle) {
+  int good = 0;
+  const int runs = 3;
+  for (unsigned seed = 1; seed <= runs; ++seed) {
+    const CorrespondenceScene scene =
+        makeCorrespondenceScene(stereoShape(), kRotation, kTranslation, 200, 0.4, 0.3, seed);
+    const RobustEstimate found =
+        estimate<FivePointMartyushev>(scene.set(), {kRotation.norm() + 1e-4}, {}, RobustEstimatorOptions(), seed);
+    good += found.success && rotationError(found, scene) < 0.01 && directionError(found, scene) < 0.2;
+  }
+  EXPECT_EQ(good, runs);
+}
+
 TEST(RobustEstimator, TheRotationPriorDropsHypothesesBeforeTheyAreScored) {
   const CorrespondenceScene scene =
       makeCorrespondenceScene(surroundShape(), kRotation, kTranslation, 200, 0.4, 0.6, 11);

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "multicam_egomotion/geometry/ray.h"
+#include "multicam_egomotion/solvers/five_point_martyushev.h"
 #include "multicam_egomotion/solvers/four_point_axis.h"
 #include "multicam_egomotion/solvers/four_point_lee.h"
 #include "multicam_egomotion/solvers/four_point_liu.h"
@@ -13,7 +14,7 @@
 
 namespace multicam_egomotion {
 
-// The minimal solvers for estimate<Solver>().
+// The six minimal solvers for estimate<Solver>().
 
 /// 4pt-vertical
 struct FourPointVertical {
@@ -57,6 +58,15 @@ struct FourPointSweeney {
   using Prior = AxisPrior;
   static auto solve(const std::array<RayCorrespondence, 4>& sample, const Prior& prior, const SolverOptions& options) {
     return solveFourPointSweeney(sample, prior, options);
+  }
+};
+
+/// 5pt-martyushev
+struct FivePointMartyushev {
+  static constexpr int kSampleSize = 5;
+  using Prior = AnglePrior;
+  static auto solve(const std::array<RayCorrespondence, 5>& sample, const Prior& prior, const SolverOptions& options) {
+    return solveFivePointMartyushev(sample, prior, options);
   }
 };
 

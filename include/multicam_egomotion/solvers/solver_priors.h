@@ -20,6 +20,11 @@ struct AxisPrior {
   Eigen::Vector3d axis;
 };
 
+/// Rotation angle; the axis is free, so its sign and whole turns do not matter.
+struct AnglePrior {
+  double angle;  ///< [rad]
+};
+
 /// A rotation that turns `direction` (not zero) into z; its yaw is arbitrary but depends on `direction` alone.
 inline Eigen::Matrix3d rotationToZ(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d z = direction / direction.norm();
