@@ -25,6 +25,12 @@ struct PriorOf<AxisPrior> {
   static AxisPrior take(const SolverPriors& priors) { return priors.axis; }
 };
 
+template <>
+struct PriorOf<AnglePrior> {
+  static constexpr PriorKind kKind = PriorKind::kAngle;
+  static AnglePrior take(const SolverPriors& priors) { return {priors.angle}; }
+};
+
 template <class Solver>
 std::array<RayCorrespondence, Solver::kSampleSize> firstRays(const RayCorrespondence* rays) {
   std::array<RayCorrespondence, Solver::kSampleSize> sample;
@@ -63,8 +69,11 @@ PaperSolver solver(const std::string& name) {
 
 const std::vector<PaperSolver>& paperSolvers() {
   static const std::vector<PaperSolver> solvers = {
-      solver<FourPointLee>("4pt-lee"),         solver<FourPointLiu>("4pt-liu"),
-      solver<FourPointSweeney>("4pt-sweeney"), solver<FourPointVertical>("4pt-vertical"),
+      solver<FivePointMartyushev>("5pt-martyushev"),
+      solver<FourPointLee>("4pt-lee"),
+      solver<FourPointLiu>("4pt-liu"),
+      solver<FourPointSweeney>("4pt-sweeney"),
+      solver<FourPointVertical>("4pt-vertical"),
       solver<FourPointAxis>("4pt-axis"),
   };
   return solvers;
