@@ -7,23 +7,33 @@ add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${ca
 target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})
 target_link_libraries(multicam_egomotion_ros
   PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} PRIVATE ${YAML_CPP_LIBRARIES})
+set(ros_headers <map> <string> <vector> <Eigen/Geometry> <image_transport/image_transport.h> <nav_msgs/Odometry.h>
+  <opencv2/core.hpp> <ros/ros.h> <rosbag/bag.h> <rosbag/view.h> <sensor_msgs/CameraInfo.h> <sensor_msgs/Image.h>
+  <sensor_msgs/Imu.h> <tf2_msgs/TFMessage.h> <tf2_ros/transform_listener.h>)
+precompile_headers(ros_libraries multicam_egomotion_ros ${ros_headers})
 
 add_library(multicam_egomotion_nodelet src/ros/nodelet/ego_motion_nodelet.cpp)
 target_link_libraries(multicam_egomotion_nodelet multicam_egomotion_ros)
+precompile_headers(ros_libraries multicam_egomotion_nodelet)
 
 add_executable(egomotion_node src/tools/egomotion_node.cpp)
+target_include_directories(egomotion_node PRIVATE src/tools)
 target_link_libraries(egomotion_node multicam_egomotion_ros)
 
 layer_sources(bag_runner_sources tools/bag_runner)
-add_executable(egomotion_bag src/tools/egomotion_bag.cpp ${bag_runner_sources})
-target_include_directories(egomotion_bag PRIVATE src/tools)
-target_link_libraries(egomotion_bag multicam_egomotion_ros Boost::program_options)
+add_library(multicam_egomotion_bag_runner STATIC ${bag_runner_sources})
+target_include_directories(multicam_egomotion_bag_runner PUBLIC src/tools)
+target_link_libraries(multicam_egomotion_bag_runner PUBLIC multicam_egomotion_ros PRIVATE Boost::program_options)
+precompile_headers(ros_libraries multicam_egomotion_bag_runner)
+add_executable(egomotion_bag src/tools/egomotion_bag.cpp)
+target_link_libraries(egomotion_bag multicam_egomotion_bag_runner)
 
 layer_sources(fault_injection_sources tools/fault_injection)
 add_library(multicam_egomotion_fault_injection STATIC ${fault_injection_sources})
 target_include_directories(multicam_egomotion_fault_injection PUBLIC src/tools)
 target_include_directories(multicam_egomotion_fault_injection SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(multicam_egomotion_fault_injection PUBLIC multicam_egomotion_core ${catkin_LIBRARIES})
+precompile_headers(ros_libraries multicam_egomotion_fault_injection)
 add_executable(corrupt_bag src/tools/corrupt_bag.cpp)
 target_link_libraries(corrupt_bag multicam_egomotion_fault_injection Boost::program_options)
 

@@ -7,20 +7,24 @@ endif()
 
 file(GLOB ros_unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_*.cpp)
 list(REMOVE_ITEM ros_unit_tests ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_fault_table.cpp)
-add_executable(test_ros_layer EXCLUDE_FROM_ALL ${ros_unit_tests} ${bag_runner_sources})
-target_include_directories(test_ros_layer PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src/tools)
-target_compile_definitions(test_ros_layer PRIVATE CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
-target_link_libraries(test_ros_layer multicam_egomotion_ros multicam_egomotion_fault_injection Boost::program_options
-  GTest::GTest GTest::Main)
+add_executable(test_ros_layer EXCLUDE_FROM_ALL ${ros_unit_tests})
+set_source_files_properties(test/unit/ros/test_corrupt_bag.cpp PROPERTIES
+  COMPILE_DEFINITIONS CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
+target_link_libraries(test_ros_layer multicam_egomotion_bag_runner multicam_egomotion_fault_injection GTest::GTest
+  GTest::Main)
+target_compile_options(test_ros_layer PRIVATE -O1)  # compiles faster, and what counts is in the libraries
+precompile_headers(ros_tests test_ros_layer ${ros_headers} <gtest/gtest.h>)
 set_target_properties(test_ros_layer PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 add_test(NAME test_ros_layer COMMAND test_ros_layer WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_ros_layer corrupt_bag)
 add_dependencies(tests test_ros_layer)
 
 # What each fault of the data does to the odometry, one row a fault.
-add_executable(test_fault_table EXCLUDE_FROM_ALL test/unit/ros/test_fault_table.cpp ${bag_runner_sources})
-target_link_libraries(test_fault_table multicam_egomotion_ros multicam_egomotion_fault_injection
-  multicam_egomotion_simulator Boost::program_options GTest::GTest GTest::Main)
+add_executable(test_fault_table EXCLUDE_FROM_ALL test/unit/ros/test_fault_table.cpp)
+target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_egomotion_fault_injection
+  multicam_egomotion_simulator GTest::GTest GTest::Main)
+target_compile_options(test_fault_table PRIVATE -O1)
+precompile_headers(ros_tests test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 foreach(recording simulated recorded)
   add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
@@ -30,9 +34,11 @@ endforeach()
 add_dependencies(tests test_fault_table)
 
 # Executables where rostest looks for those of the package.
-foreach(name test_replay test_services)
+foreach(name test_nodelet_manager test_replay test_services)
   add_executable(${name} EXCLUDE_FROM_ALL test/rostest/${name}.cpp)
   target_link_libraries(${name} multicam_egomotion_ros GTest::GTest)
+  target_compile_options(${name} PRIVATE -O1)
+  precompile_headers(ros_tests ${name})
   add_dependencies(tests ${name})
 endforeach()
 add_dependencies(tests multicam_egomotion_nodelet ${ros_tools})
@@ -49,13 +55,19 @@ endfunction()
 
 # A simulated recording, made when the tests run.
 set(simulated ${recordings}/handheld_stereo)
-add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simulated}.bag --duration 8)
+add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simulated}.bag --duration 6)
 set_tests_properties(recording_simulated PROPERTIES FIXTURES_SETUP simulated TIMEOUT 300)
 add_ros_test(replay_simulated replay.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml max_error:=0.05)
 add_ros_test(topics_only topics_only.test bag:=${simulated}.bag)
 add_ros_test(bad_configuration bad_configuration.test rig:=${simulated}.rig.yaml)
-set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bad_configuration PROPERTIES
-  FIXTURES_REQUIRED simulated)
+add_ros_test(bag_loop bag_loop.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
+add_ros_test(nodelet_manager nodelet_manager.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
+add_ros_test(live_faults live_faults.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
+set_tests_properties(rostest_live_faults PROPERTIES TIMEOUT 600)  # with as many signals as one likes
+add_test(NAME test_egomotion_bag COMMAND ${PYTHON_EXECUTABLE}
+  ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_egomotion_bag.py $<TARGET_FILE:egomotion_bag> ${simulated})
+set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bad_configuration rostest_bag_loop
+  rostest_nodelet_manager rostest_live_faults test_egomotion_bag PROPERTIES FIXTURES_REQUIRED simulated)
 
 # A real one, where the data are.
 if(DEFINED ENV{MULTICAM_EGOMOTION_DATA})

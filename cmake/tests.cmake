@@ -16,6 +16,8 @@ function(add_unit_test name)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${name}.cpp)
   add_executable(${name} EXCLUDE_FROM_ALL ${source})
   target_link_libraries(${name} ${ARGN} GTest::GTest GTest::Main)
+  precompile_headers(unit_tests ${name} <algorithm> <cmath> <iostream> <map> <random> <string> <vector> <Eigen/Cholesky>
+    <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/SVD> <gtest/gtest.h>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
   file(STRINGS ${source} shared_set_up REGEX "SetUpTestSuite")
   if(shared_set_up)
@@ -33,7 +35,20 @@ function(add_style_check name)
   set_tests_properties(style_${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 120)
 endfunction()
 
+# A project outside of this one that uses the solver library, built and run.
+function(add_consumer_test name)
+  set(directory ${CMAKE_BINARY_DIR}/test/${name})
+  add_test(NAME ${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/test/consumer ${directory}
+      --build-generator ${CMAKE_GENERATOR} --build-noclean --build-options -DCMAKE_BUILD_TYPE=Release
+      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} ${ARGN}
+      --test-command ${directory}/consumer)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()
+
 if(MULTICAM_EGOMOTION_ROS)
+  add_consumer_test(consumer_catkin -Dmulticam_egomotion_DIR=${CATKIN_DEVEL_PREFIX}/share/multicam_egomotion/cmake)
+
   # The Python tools read and write bags. unittest says "OK (skipped=...)" only where nothing failed.
   file(GLOB script_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_scripts_*.py)
   foreach(file ${script_tests})
@@ -71,6 +86,45 @@ if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
   target_link_libraries(test_camera_model opencv_calib3d)
 endif()
 
+# Examples check what they show.
+file(GLOB examples CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/examples/*.cpp)
+foreach(file ${examples})
+  get_filename_component(name ${file} NAME_WE)
+  add_executable(example_${name} EXCLUDE_FROM_ALL ${file})
+  target_link_libraries(example_${name} multicam_egomotion_solvers)
+  set_target_properties(example_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+  add_test(NAME example_${name} COMMAND example_${name})
+  add_dependencies(tests example_${name})
+endforeach()
+
+if(MULTICAM_EGOMOTION_PYTHON)
+  add_test(NAME python_module COMMAND ${PYTHON_EXECUTABLE} -m unittest -v test_python_module
+    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
+  add_test(NAME example_python COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/examples/relative_pose.py)
+  set_tests_properties(python_module example_python PROPERTIES TIMEOUT 120
+    ENVIRONMENT PYTHONPATH=${CMAKE_BINARY_DIR}/python)
+  add_dependencies(tests multicam_egomotion_python)
+endif()
+
+# The consumer project against an installation in a scratch directory.
+set(prefix ${CMAKE_BINARY_DIR}/test/prefix)
+add_test(NAME install_solvers COMMAND ${CMAKE_COMMAND} --install ${CMAKE_BINARY_DIR} --component solvers --prefix ${prefix})
+add_consumer_test(consumer_install -DCMAKE_PREFIX_PATH=${prefix})
+set_tests_properties(install_solvers PROPERTIES FIXTURES_SETUP installed TIMEOUT 60)
+set_tests_properties(consumer_install PROPERTIES FIXTURES_REQUIRED installed)
+
+# Long runs, by hand or by test_long.sh.
+if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
+  file(GLOB soaks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/soak/*.cpp)
+  foreach(file ${soaks})
+    get_filename_component(name ${file} NAME_WE)
+    add_executable(${name} EXCLUDE_FROM_ALL ${file})
+    target_link_libraries(${name} multicam_egomotion_simulator)
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+    add_dependencies(tests ${name})
+  endforeach()
+endif()
+
 if(benchmark_FOUND)
   # Those of solvers and estimation need Eigen only.
   file(GLOB benchmarks CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/benchmark/*_benchmark.cpp)
@@ -86,4 +140,10 @@ if(benchmark_FOUND)
     endif()
     add_dependencies(tests ${name})
   endforeach()
+  # Beside ours, where it is installed and its types are laid out as those of this build.
+  find_package(opengv QUIET)
+  if(opengv_FOUND AND MULTICAM_EGOMOTION_EIGEN_ALIGNMENT EQUAL 16)
+    target_sources(solver_benchmark PRIVATE test/benchmark/opengv_solvers.cpp)
+    target_link_libraries(solver_benchmark opengv)
+  endif()
 endif()

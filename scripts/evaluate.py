@@ -20,7 +20,8 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # also when started through catkin's relay
 from consistency import accumulated_consistency, relative_consistency, scale_errors_by_state  # noqa: E402
 from dataset_files import InputError  # noqa: E402
-from evaluation_text import report_text, summary_text  # noqa: E402
+from evaluation_text import report_text  # noqa: E402
+from run_summary import summarize, summary_text  # noqa: E402
 from trajectory_errors import (absolute_errors, align, associate, frame_to_frame_errors,  # noqa: E402
                                relative_errors)
 from trajectory_io import (NS, Trajectory, has_topic, read_bag_frame_records, read_bag_odometry,  # noqa: E402
@@ -107,7 +108,8 @@ def parse(arguments):
     parser.add_argument("--json", metavar="FILE", type=pathlib.Path, help="write the report as JSON")
     parser.add_argument("--plot", metavar="FILE.png", type=pathlib.Path, help="write a picture")
     parser.add_argument("--summary", metavar="DIR", type=pathlib.Path,
-                        help="instead: one line for each JSON report in a directory")
+                        help="instead: one line a bag from the JSON reports of egomotion_bag and evaluate.py in a "
+                             "directory, and the bags that failed (exit code 1); also as --json FILE")
     parser.add_argument("--times", metavar="FILE", type=pathlib.Path,
                         help="stamps [s] of KITTI pose files, one a line")
     parser.add_argument("--up", choices=("z", "-y"),
@@ -131,9 +133,12 @@ def main(arguments=None):
     options, program = parse(arguments)
     try:
         if options.summary:
-            print(summary_text(options.summary))
-        else:
-            run(options)
+            summary = summarize(options.summary)
+            print(summary_text(summary))
+            if options.json:
+                options.json.write_text(json.dumps(summary, indent=2) + "\n")
+            return 1 if summary["failed"] else 0
+        run(options)
     except (InputError, OSError) as error:
         print(f"{program}: error: {error}", file=sys.stderr)
         return 1

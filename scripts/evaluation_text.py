@@ -1,10 +1,7 @@
 # SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""An evaluation as text: the report of one trajectory, and the summary of many."""
+"""An evaluation as text."""
 
-import json
-
-from dataset_files import InputError, require_directory
 from trajectory_errors import ALIGNMENTS
 
 MISSING = "-"
@@ -77,29 +74,3 @@ def _nees_lines(consistency):
         if groups["skipped_frames"]:
             notes.append(f"({name}: {groups['skipped_frames']} frames without a positive definite covariance skipped)")
     return table(header, rows) + notes
-
-
-def summary_text(directory):
-    """One line for each JSON report of a directory."""
-    paths = sorted(require_directory(directory).glob("*.json"))
-    rows = []
-    for path in paths:
-        try:
-            report = json.loads(path.read_text())
-            rows.append([path.stem, *_summary_cells(report)])
-        except (ValueError, KeyError, TypeError):
-            continue  # other JSON files, of the bag runner for instance, may stand beside the reports
-    if not rows:
-        raise InputError(f"{directory}: found no report of evaluate.py among {len(paths)} .json files")
-    return "\n".join(table(["name", "poses", "path [m]", "ATE [m]", "ATE [%]", "Sim(3) scale", "drift [%]", "over",
-                            "eps_R [deg]", "eps_t [deg]"], rows))
-
-
-def _summary_cells(report):
-    ate, frames = report["ate"], report["frame_to_frame"]
-    by_length = [segment for segment in report["relative"] if segment["over"].endswith(" m")]
-    longest = by_length[-1] if by_length else {}
-    return [report["poses"], number(report, "path_m", 1), number(ate["position_yaw"], "rmse_m", 4),
-            number(ate["position_yaw"], "percent_of_path"), number(ate["sim3"], "scale", 4),
-            number(longest, "drift_percent"), longest.get("over", MISSING),
-            number(frames, "rotation_median_deg", 4), number(frames, "direction_median_deg")]

@@ -15,7 +15,7 @@ constexpr double kSideBegin = 2.0, kSideEnd = 22.0;  // in limits
 constexpr double kUnseen = 0.01;                     // inliers expected at a distance at which no other is
 constexpr double kBent = 2.0;                        // outliers to which the pose may have been bent
 
-constexpr double kMeanDistrust = 0.125;
+constexpr double kMeanDistrust = 0.25;
 constexpr double kFirstParallax = 0.1, kLeastParallax = 1e-8;  // squared [rad^2]
 constexpr int kParallaxSteps = 5;
 

@@ -13,6 +13,8 @@
 namespace multicam_egomotion {
 namespace {
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 constexpr double kCoreSigmas = 2.5, kLimitSigmas = 3.5;
 constexpr double kExpectedWeight = 4.0;  // correspondences that the expected noise stands for
 constexpr int kTruncationSteps = 8;
@@ -46,6 +48,18 @@ double measuredSigma(const TwoViewNormalEquations& equations, const RobustLoss& 
   const double freedom = std::max(0.0, equations.core_weight - 6.0);
   const double square = (kExpectedWeight * expected * expected + equations.core_squares) / (kExpectedWeight + freedom);
   return std::max(sigmaOfTruncated(square, loss.core, 0.5 * max_error_px), kLeastSigma);
+}
+
+// The noise of an observation is the same whatever its weight w: with A = sum of w J J^T and B = sum of w^2 J J^T, the
+// covariance is A^-1 B A^-1.
+Matrix6d covarianceOf(const TwoViewNormalEquations& equations, RayBlocks<double> rays, const TwoViewNoise& noise,
+                      const MotionPriors& priors, const TwoViewEstimate& estimate) {
+  for (RayBlock<double>& block : rays.blocks) {
+    for (double& weight : block.weight) weight *= weight;
+  }
+  const Matrix6d B = linearizeTwoView(rays, false, noise, priors, estimate.R, estimate.t).information;
+  const Matrix6d inverse = equations.information.llt().solve(Matrix6d::Identity());
+  return inverse * B * inverse;
 }
 
 }  // namespace
@@ -89,7 +103,7 @@ TwoViewEstimate refineTwoView(const RayBlocks<double>& rays, const MotionPriors&
     lambda *= 0.1;
   }
   estimate.R = Eigen::Quaterniond(estimate.R).normalized().toRotationMatrix();
-  estimate.covariance = now.information.llt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  estimate.covariance = covarianceOf(now, rays, noise, priors, estimate);
   estimate.pixel_sigma = noise.pixel_sigma;
   estimate.success = estimate.covariance.allFinite();
   return estimate;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMaxDistance = 100.0;  // [m] from the body
 constexpr double kLeastOverlap = 0.05;
+constexpr double kMaxTimeOffset = 10.0;  // [s]
 
 // Checks the extrinsics and removes the rounding of the file from the rotation.
 void makeRigid(RigCamera* camera) {
@@ -62,9 +63,9 @@ CameraRig::CameraRig(std::vector<RigCamera> cameras) : cameras_(std::move(camera
   }
   for (RigCamera& camera : cameras_) {
     makeRigid(&camera);
-    if (!std::isfinite(camera.time_offset_s)) {
-      throw std::invalid_argument("camera rig: time_offset_s of camera '" + camera.name +
-                                  "' is not finite, expected seconds");
+    if (!(std::abs(camera.time_offset_s) <= kMaxTimeOffset)) {
+      throw std::invalid_argument("camera rig: time_offset_s of camera '" + camera.name + "' is " +
+                                  std::to_string(camera.time_offset_s) + ", expected -10 to 10 s");
     }
   }
 

@@ -32,7 +32,7 @@ ImuBuffer::ImuBuffer(std::size_t capacity) : capacity_(capacity) {
 }
 
 bool ImuBuffer::add(const ImuSample& sample) {
-  if (!sample.angular_velocity.allFinite() || !sample.linear_acceleration.allFinite()) {
+  if (!plausible(sample)) {
     ++faults_.not_finite;
     return false;
   }

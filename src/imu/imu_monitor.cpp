@@ -51,12 +51,12 @@ void ImuMonitor::add(const ImuSample& sample) {
     at_limit_.setZero();
   }
   ++samples_;
-  Vector6d values;
-  values << sample.angular_velocity, sample.linear_acceleration;
-  if (!values.allFinite()) {
+  if (!plausible(sample)) {
     ++not_finite_;
     return;
   }
+  Vector6d values;
+  values << sample.angular_velocity, sample.linear_acceleration;
   force_sum_ += sample.linear_acceleration.norm();
   if (sample.stamp_ns != last_ns_) {
     repeated_ += values == last_;
@@ -78,7 +78,8 @@ void ImuMonitor::judge(double duration_s) {
     faults_.push_back(
         text("IMU: %.0f samples in %.1f s, expected %.0f Hz", static_cast<double>(samples_), duration_s, rate_hz_));
   }
-  if (not_finite_ > 0) faults_.push_back(text("IMU: %d of %d samples not finite", not_finite_, samples_));
+  if (not_finite_ > 0)
+    faults_.push_back(text("IMU: %d of %d samples not finite or larger than any sensor's", not_finite_, samples_));
   const int finite = samples_ - not_finite_;
   if (finite == 0) return;
   if (repeated_ > 0.5 * finite) {

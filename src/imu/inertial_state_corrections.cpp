@@ -14,7 +14,7 @@ namespace {
 /// 99.9 % quantile of χ² for 2 and 3 degrees of freedom.
 constexpr double chiSquareGate(int degrees_of_freedom) { return degrees_of_freedom == 2 ? 13.816 : 16.266; }
 
-constexpr double kKeptDoubt = 0.7;      // of the doubt in the gyroscope, from frame to frame once it agrees
+constexpr double kKeptDoubt = 0.7;      // of the doubt in the gyroscope, from frame to frame
 constexpr double kIgnoredDoubt = 10.0;  // times its variance
 
 }  // namespace
@@ -56,13 +56,14 @@ bool InertialState::correctRelativeRotation(const Eigen::Matrix3d& R_1_2, const 
 }
 
 void InertialState::doubtGyroscope(const Eigen::Vector3d& residual, bool recovered) {
-  const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
-  const double density = residual.squaredNorm() / (3.0 * duration);
+  // Fades even if the gyroscope still disagrees: what lasts is then taken for its bias.
+  doubted_rate_density_ *= kKeptDoubt;
+  if (doubted_rate_density_ < kIgnoredDoubt * gyroscope_variance_) {
+    doubted_rate_density_ = 0.0;
+  }
   if (recovered) {
-    doubted_rate_density_ = density;
-  } else if (doubted_rate_density_ > 0.0) {
-    doubted_rate_density_ = std::max(kKeptDoubt * doubted_rate_density_, density);
-    if (doubted_rate_density_ < kIgnoredDoubt * gyroscope_variance_) doubted_rate_density_ = 0.0;
+    const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
+    doubted_rate_density_ = residual.squaredNorm() / (3.0 * duration);
   }
 }
 

@@ -8,6 +8,7 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr std::int64_t kDefaultPeriod = 100000000;  // until it has been measured [ns]
+constexpr std::int64_t kShortestPeriod = 1000000;   // of any camera; wrong stamps may be nearer to each other [ns]
 
 }  // namespace
 
@@ -21,7 +22,8 @@ void Coasting::markFrame(std::int64_t stamp_ns, bool estimated) {
 
 std::int64_t Coasting::period() const {
   const int n = std::min<int>(intervals_, intervals_ns_.size());
-  return n == 0 ? kDefaultPeriod : *std::min_element(intervals_ns_.begin(), intervals_ns_.begin() + n);
+  if (n == 0) return kDefaultPeriod;
+  return std::max(kShortestPeriod, *std::min_element(intervals_ns_.begin(), intervals_ns_.begin() + n));
 }
 
 std::optional<std::int64_t> Coasting::nextTick(std::int64_t until_ns) const {

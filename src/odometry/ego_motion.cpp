@@ -88,6 +88,17 @@ class EgoMotion::Impl {
     startEpoch(forget_biases, T_odom_body);
   }
 
+  void tune(const EgoMotionOptions& options) {
+    EgoMotionOptions tuned = options_;
+    tuned.solver = options.solver;
+    tuned.ransac.max_epipolar_error_px = options.ransac.max_epipolar_error_px;
+    tuned.tracker.features_per_camera = options.tracker.features_per_camera;
+    tuned.tracker.fast_threshold = options.tracker.fast_threshold;
+    validate(tuned);
+    tracker_.setDetection(tuned.tracker);
+    options_ = std::move(tuned);
+  }
+
   std::optional<EgoMotionResult> predictToLatestImu() const {
     if (!inertial_ || !inertial_->initialized() || last_stamp_ns_ == 0 || coasting_.lost() ||
         input_.imu().latestStamp() <= motion_->stamp()) {
@@ -508,6 +519,7 @@ void EgoMotion::setPose(const Eigen::Isometry3d& T_odom_body) { impl_->reset(fal
 std::optional<EgoMotionResult> EgoMotion::predictToLatestImu() const { return impl_->predictToLatestImu(); }
 void EgoMotion::setStageObserver(std::function<void(const char*)> observer) { impl_->observer_ = std::move(observer); }
 void EgoMotion::setMask(int camera, const cv::Mat& mask) { impl_->tracker().setMask(camera, mask); }
+void EgoMotion::tune(const EgoMotionOptions& options) { impl_->tune(options); }
 const CameraRig& EgoMotion::rig() const { return impl_->rig_; }
 const EgoMotionOptions& EgoMotion::options() const { return impl_->options_; }
 EgoMotionCounters EgoMotion::counters() const { return impl_->counters(); }

@@ -13,6 +13,9 @@ constexpr double kJumpBack = 0.5;  // images whose stamps go back by more tell a
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
+// 0, as of a stamp that was never set, for what can be no time.
+std::int64_t knownStamp(std::int64_t stamp_ns) { return stamp_ns > 0 && stamp_ns <= kLatestStamp ? stamp_ns : 0; }
+
 std::vector<std::int64_t> timeOffsets(const CameraRig& rig) {
   std::vector<std::int64_t> offsets;
   for (const RigCamera& camera : rig.cameras()) offsets.push_back(std::llround(camera.time_offset_s * 1e9));
@@ -30,8 +33,10 @@ SensorInput::SensorInput(const CameraRig& rig, const ImuCalibration& imu, const 
       imu_monitor_(imu.rate_hz, options.inertial.gravity),
       latest_image_ns_(rig.size(), 0) {}
 
-bool SensorInput::addImu(const ImuSample& sample) {
+bool SensorInput::addImu(const ImuSample& received) {
   if (!use_imu_) return false;
+  ImuSample sample = received;
+  sample.stamp_ns = knownStamp(sample.stamp_ns);
   imu_monitor_.add(sample);
   bool jumped = false;
   for (const ImuSample& passed : imu_gate_.pass(sample)) {
@@ -47,7 +52,9 @@ bool SensorInput::addImu(const ImuSample& sample) {
   return jumped;
 }
 
-bool SensorInput::addImage(const CameraImage& image, std::int64_t now_ns) {
+bool SensorInput::addImage(const CameraImage& received, std::int64_t now_ns) {
+  CameraImage image = received;
+  image.stamp_ns = knownStamp(image.stamp_ns);
   if (!image_monitor_.fits(image)) return false;
   const bool jumped = wentBack(image);
   if (jumped) {
@@ -80,6 +87,7 @@ void SensorInput::forgetOtherTime() {
 
 // The caller's time, but that of the data until it has followed a jump back.
 std::int64_t SensorInput::dataTime(std::int64_t now_ns) {
+  now_ns = std::clamp<std::int64_t>(now_ns, 0, kLatestStamp);
   caller_ahead_ = caller_ahead_ && now_ns > newest_ns_;
   return caller_ahead_ ? newest_ns_ : now_ns;
 }

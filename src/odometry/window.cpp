@@ -8,18 +8,18 @@
 #include <limits>
 
 #include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/odometry/landmark_distance.h"
 #include "multicam_egomotion/odometry/window_marginals.h"
 
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kPixelSigmaGain = 0.1;  // share of a frame's measured image noise in the running estimate
-// Share of a patch's own error that stays from frame to frame where nothing moves, and the parallax that changes it
-// [px].
-constexpr double kKeptPatchError = 0.5;
-constexpr double kPatchChangePx = 10.0;
-constexpr double kUsualInverseDistance = 0.3;  // of points whose distance is not seen [1/m]
-constexpr int kMinLandmarks = 6;  // tracks that the newest frame shares with older ones, below which it fails
+constexpr double kDoubtedRotation = 0.35;  // sigma of a prior that the images contradict [rad]
+constexpr double kMovingSigmas = 5.0;      // error of a track at a pose found without it
+constexpr int kManyKnown = 60;             // landmarks that do without newcomers
+constexpr int kFramesOfNewcomers = 3;
+constexpr double kRestParallax = 0.5;  // between two frames [px]
+constexpr int kMinLandmarks = 6;       // tracks that the newest frame shares with older ones, below which it fails
 
 BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
 
@@ -36,7 +36,8 @@ Eigen::Matrix3d informationOf(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-Window::Window(const WindowOptions& options) : options_(options), pixel_sigma_(options.initial_pixel_sigma) {}
+Window::Window(const WindowOptions& options)
+    : options_(options), noise_(options.initial_pixel_sigma, options.min_pixel_sigma, options.max_pixel_sigma) {}
 
 void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,
                    const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam) {
@@ -64,43 +65,23 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
     observation.bearing = T.linear() * feature.bearing;
     observation.center = T.translation();
     observation.to_pixel = feature.to_pixel * T.linear().transpose();
-    BundleLandmark& landmark = landmarks_[feature.track];
+    Landmark& landmark = landmarks_[feature.track];
     if (landmark.observations.empty()) {
       landmark.origin = pose.p + pose.R * observation.center;
       landmark.direction = pose.R * observation.bearing;
       landmark.inverse_distance = 0.0;
     }
+    landmark.frames += landmark.observations.empty() || landmark.observations.back().pose != newest;
     landmark.observations.push_back(observation);
   }
 }
 
-// Distance of a landmark from its other views by a scan in inverse distance, refined by the joint optimization later;
-// where the views do not tell, a far one.
-void Window::initializeLandmark(BundleLandmark* landmark) const {
-  double best_cost = std::numeric_limits<double>::infinity(), best = 0.0;
-  for (int k = 0; k <= 24; ++k) {
-    const double inverse_distance = k == 0 ? 0.0 : 0.002 * std::pow(1.35, k - 1);  // 0, then 1/500 m to about 1/0.5 m
-    double cost = std::pow(inverse_distance / kUsualInverseDistance, 2);
-    for (const BundleObservation& observation : landmark->observations) {
-      const BundlePose& pose = states_[observation.pose].pose;
-      const Eigen::Vector3d x =
-          pose.R.transpose() * (landmark->direction + inverse_distance * (landmark->origin - pose.p)) -
-          inverse_distance * observation.center;
-      const double depth = observation.bearing.dot(x);
-      const double error = depth > 1e-6 ? (observation.to_pixel * x).norm() / (depth * pixel_sigma_) : 1e3;
-      cost += std::min(error * error, 1e6);
-    }
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = inverse_distance;
-    }
-  }
-  landmark->inverse_distance = best;
-}
-
 void Window::initializeLandmarks() {
+  std::vector<BundlePose> poses;
+  for (const State& state : states_) poses.push_back(state.pose);
   for (auto& [track, landmark] : landmarks_) {
-    if (landmark.inverse_distance == 0.0 && landmark.observations.size() >= 2) initializeLandmark(&landmark);
+    if (landmark.inverse_distance != 0.0 || landmark.observations.size() < 2) continue;
+    landmark.inverse_distance = findInverseDistance(landmark, poses, noise_.pixelSigma());
   }
 }
 
@@ -121,11 +102,13 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
   }
   for (const auto& [track, landmark] : landmarks_) {
     if (landmark.observations.size() < 2) continue;
+    const bool newcomer = landmark.frames < kFramesOfNewcomers && !states_[landmark.observations.front().pose].keyframe;
+    if (newcomers_wait_ && newcomer) continue;
     tracks->push_back(track);
     bundle.landmarks.push_back(landmark);
   }
   bundle.prior = prior_;
-  bundle.pixel_sigma = pixel_sigma_;
+  bundle.pixel_sigma = noise_.pixelSigma();
   return bundle;
 }
 
@@ -134,7 +117,7 @@ double Window::alignNewest(BundlePose* pose) const {
   const int newest = static_cast<int>(states_.size()) - 1;
   BundleAdjustment bundle;
   bundle.poses = {*pose};
-  bundle.pixel_sigma = pixel_sigma_;
+  bundle.pixel_sigma = noise_.pixelSigma();
   int views = 0;
   for (const auto& [track, landmark] : landmarks_) {
     if (landmark.inverse_distance == 0.0 || landmark.observations.front().pose == newest) continue;
@@ -192,96 +175,115 @@ WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::I
     }
   }
   states_.back().pose = best;
+  newcomers_wait_ = seemsAtRest();
   initializeLandmarks();
+  if (newcomers_wait_) dropMoving(&estimate);
 
   optimize(&estimate);
   return estimate;
 }
 
-void Window::optimize(WindowEstimate* estimate) {
-  std::vector<TrackId> tracks;
-  BundleAdjustment bundle = makeBundle(&tracks);
-  const BundleSummary summary = bundle.solve(options_.bundle);
-  if (!summary.finite) return;
-  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
-  for (std::size_t l = 0; l < tracks.size(); ++l) {
-    BundleLandmark& landmark = landmarks_[tracks[l]];
-    landmark.direction = bundle.landmarks[l].direction;
-    landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
+// The known landmarks say that the body has hardly moved.
+bool Window::seemsAtRest() const {
+  const BundlePose& previous = states_[states_.size() - 2].pose;
+  const BundlePose& newest = states_.back().pose;
+  std::vector<double> parallax;
+  int known = 0;
+  for (const auto& [track, landmark] : landmarks_) {
+    if (landmark.inverse_distance == 0.0 || !seenInNewest(landmark)) continue;
+    ++known;
+    if (errorInNewest(landmark) > options_.outlier_sigmas) continue;
+    const BundleObservation& view = landmark.observations.back();
+    const Eigen::Vector3d moved =
+        newest.R.transpose() * (previous.p + previous.R * view.center - newest.p) - view.center;
+    parallax.push_back((view.to_pixel * moved).norm() * landmark.inverse_distance);
   }
-  measureNoise(bundle, summary);
-  const int newest = static_cast<int>(states_.size()) - 1;
-  estimate->ok = true;
-  estimate->T_odom_previous = toIsometry(states_[newest - 1].pose);
-  estimate->T_odom_body = toIsometry(states_[newest].pose);
-  estimate->pixel_sigma = pixel_sigma_;
-  computeMarginals(&bundle, options_.bundle, white_share_, estimate);
-  // All moves with the start.
-  Matrix6d with_start = Matrix6d::Identity();
-  with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
-  estimate->covariance += with_start * start_.covariance * with_start.transpose();
+  if (static_cast<int>(parallax.size()) < std::max(kManyKnown, known / 2)) return false;
+  const auto middle = parallax.begin() + parallax.size() / 2;
+  std::nth_element(parallax.begin(), middle, parallax.end());
+  return *middle < kRestParallax;
+}
+
+// Tracks of a moving object that passes along the epipolar lines fit a motion of the body that is not, as long as their
+// distances are free: they are judged by the pose that the known landmarks give.
+void Window::dropMoving(WindowEstimate* estimate) {
+  for (auto it = landmarks_.begin(); it != landmarks_.end();) {
+    const bool moving =
+        it->second.observations.size() >= 2 && seenInNewest(it->second) && errorInNewest(it->second) > kMovingSigmas;
+    if (moving) estimate->outliers.push_back(it->first);
+    it = moving ? landmarks_.erase(it) : std::next(it);
+  }
+}
+
+bool Window::seenInNewest(const BundleLandmark& landmark) const {
+  return landmark.observations.back().pose == static_cast<int>(states_.size()) - 1;
+}
+
+double Window::errorInNewest(const BundleLandmark& landmark) const {
+  BundleAdjustment bundle;
+  bundle.pixel_sigma = noise_.pixelSigma();
+  bundle.poses = {states_.back().pose};
+  BundleObservation view = landmark.observations.back();
+  view.pose = 0;
+  const double error = bundle.normalizedError(landmark, view);
+  return error < 0.0 ? std::numeric_limits<double>::infinity() : error;
+}
+
+void Window::optimize(WindowEstimate* estimate) {
+  const ImageNoise noise = noise_;
+  if (!solve(estimate)) return;
+  if (contradicted(states_.back().from_previous, estimate->vision)) {
+    noise_ = noise;  // without what the wrong prior made of it
+    states_.back().from_previous.rotation_covariance +=
+        kDoubtedRotation * kDoubtedRotation * Eigen::Matrix3d::Identity();
+    if (!solve(estimate)) return;
+  }
   classify(estimate);
   estimate->keyframe = wantsKeyframe(estimate);
   if (!estimate->keyframe) return;
 
   states_.back().keyframe = true;
   // The previous frame served the estimate between frames; between keyframes it is not needed.
-  if (!states_[newest - 1].keyframe) dropState(newest - 1);
+  const int previous = static_cast<int>(states_.size()) - 2;
+  if (!states_[previous].keyframe) dropState(previous);
   if (static_cast<int>(states_.size()) > options_.max_keyframes) marginalizeOldest();
 }
 
-// Image noise from the residuals, and how much of it changes between the last two frames.
-void Window::measureNoise(const BundleAdjustment& bundle, const BundleSummary& summary) {
-  if (summary.degrees_of_freedom < 20.0) return;
-  const double gain = std::max(kPixelSigmaGain, 1.0 / ++noise_measurements_);
-  const double ratio = std::min(summary.weighted_square_sum / summary.degrees_of_freedom, 9.0);
-  const double measured_sigma = pixel_sigma_ * std::sqrt(ratio);
-  pixel_sigma_ =
-      std::clamp(std::sqrt((1.0 - gain) * pixel_sigma_ * pixel_sigma_ + gain * measured_sigma * measured_sigma),
-                 options_.min_pixel_sigma, options_.max_pixel_sigma);
-
-  const int newest = static_cast<int>(bundle.poses.size()) - 1;
-  const double w2 = std::pow(options_.bundle.robust_width * measured_sigma, 2);
-  double weights = 0.0, squares = 0.0, kept = 0.0;
-  for (const BundleLandmark& landmark : bundle.landmarks) {
-    for (const BundleObservation& now : landmark.observations) {
-      if (now.pose != newest) continue;
-      for (const BundleObservation& before : landmark.observations) {
-        Eigen::Vector2d error_now, error_before, depth_now, depth_before;
-        if (before.pose != newest - 1 || before.camera != now.camera ||
-            !bundle.error(landmark, now, &error_now, &depth_now) ||
-            !bundle.error(landmark, before, &error_before, &depth_before)) {
-          continue;
-        }
-        // Across the direction in which the point's distance, itself estimated, would take up the change.
-        const Eigen::Vector2d along = depth_now - depth_before;
-        const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
-        const double square = 0.5 * std::pow(across.dot(error_now - error_before), 2);
-        const double weight = 1.0 / (1.0 + square / w2);
-        weights += weight;
-        squares += weight * square;
-        kept += weight * std::exp(-std::pow(along.norm() * landmark.inverse_distance / kPatchChangePx, 2));
-      }
-    }
+// The joint estimate, without consequences for the tracks.
+bool Window::solve(WindowEstimate* estimate) {
+  std::vector<TrackId> tracks;
+  BundleAdjustment bundle = makeBundle(&tracks);
+  const BundleSummary summary = bundle.solve(options_.bundle);
+  if (!summary.finite) return false;
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
+  for (std::size_t l = 0; l < tracks.size(); ++l) {
+    BundleLandmark& landmark = landmarks_[tracks[l]];
+    landmark.direction = bundle.landmarks[l].direction;
+    landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
   }
-  if (weights < 10.0) return;
-  // Part of what stays with the patches still shows: their shapes change, the more the more the view does.
-  const double white = squares / weights;
-  const double total = std::max(measured_sigma * measured_sigma, white);
-  const double patch_share = 1.0 - kKeptPatchError * kept / weights;
-  const double share = std::clamp((white + patch_share * (total - white)) / (pixel_sigma_ * pixel_sigma_), 1e-4, 1.0);
-  white_share_ = share;
+  noise_.measure(bundle, summary, options_.bundle.robust_width);
+  const int newest = static_cast<int>(states_.size()) - 1;
+  estimate->ok = true;
+  estimate->T_odom_previous = toIsometry(states_[newest - 1].pose);
+  estimate->T_odom_body = toIsometry(states_[newest].pose);
+  estimate->pixel_sigma = noise_.pixelSigma();
+  computeMarginals(&bundle, options_.bundle, noise_.whiteShare(), estimate);
+  // All moves with the start.
+  Matrix6d with_start = Matrix6d::Identity();
+  with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
+  estimate->covariance += with_start * start_.covariance * with_start.transpose();
+  return true;
 }
 
 // Splits the tracks of the newest frame by their errors there, and forgets what disagrees.
 void Window::classify(WindowEstimate* estimate) {
   BundleAdjustment errors;
   for (const State& state : states_) errors.poses.push_back(state.pose);
-  errors.pixel_sigma = pixel_sigma_;
+  errors.pixel_sigma = noise_.pixelSigma();
   const int newest = static_cast<int>(states_.size()) - 1;
   for (auto it = landmarks_.begin(); it != landmarks_.end();) {
     BundleLandmark& landmark = it->second;
-    bool in_newest = false, bad = false;
+    bool in_newest = false, bad = landmark.inverse_distance * options_.min_distance > 1.0;
     for (const BundleObservation& observation : landmark.observations) {
       in_newest = in_newest || observation.pose == newest;
       if (landmark.observations.size() < 2) continue;
@@ -388,7 +390,7 @@ std::vector<Eigen::Vector3d> Window::points() const {
       const Eigen::Vector3d baseline = pose.R.transpose() * (pose.p + pose.R * view.center - start);
       parallax_px = std::max(parallax_px, (view.to_pixel * baseline).norm() * landmark.inverse_distance);
     }
-    if (parallax_px > 5.0 * pixel_sigma_) {
+    if (parallax_px > 5.0 * noise_.pixelSigma()) {
       points.push_back(landmark.origin + landmark.direction / landmark.inverse_distance);
     }
   }

@@ -19,12 +19,20 @@ constexpr double kWeakestInformation =
 
 // Calibration and tracking leave errors that do not average out over a window; scale is not seen through less [px].
 constexpr double kSystematicError = 0.25;
-// Scale error that all matches between cameras have in common, as a share: patches on slanted surfaces and at edges.
-constexpr double kCommonScaleError = 5e-4;
-constexpr double kEvenlySeen = 5.0;  // ratio of the noise along and across up to which all directions count as seen
+// What all tracks have in common: error of the scale as a share (patches on slanted surfaces and at edges, the
+// baseline) and of the direction (mounting of the cameras) [rad].
+constexpr double kCommonScaleError = 8e-4;
+constexpr double kCommonDirectionError = 2e-4;
+constexpr double kEvenlySeen = 5.0;      // ratio of the noise along and across up to which all directions count as seen
+constexpr double kContradiction = 10.0;  // sigmas by which the images' rotation differs from a wrong prior
 constexpr double kUnknownInverseDistance = 100.0;  // sigma that says nothing of a point's distance [1/m]
 
 using Matrix6x12d = Eigen::Matrix<double, 6, 12>;
+
+Eigen::Matrix3d commonErrors(const Eigen::Vector3d& p) {
+  const double scale = kCommonScaleError * kCommonScaleError, direction = kCommonDirectionError * kCommonDirectionError;
+  return direction * p.squaredNorm() * Eigen::Matrix3d::Identity() + (scale - direction) * p * p.transpose();
+}
 
 // d(position, rotation) of T_a_b, as PoseWithCovariance defines it, by the local perturbations (dp, dtheta) of a and b.
 Matrix6x12d relativeJacobian(const BundlePose& a, const BundlePose& b) {
@@ -98,8 +106,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   estimate->relative.T_a_b = relativePose(previous, newest);
   estimate->relative.covariance = J * solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance * J.transpose();
 
-  const Eigen::Vector3d common = kCommonScaleError * estimate->relative.T_a_b.translation();
-  estimate->relative.covariance.topLeftCorner<3, 3>() += common * common.transpose();
+  estimate->relative.covariance.topLeftCorner<3, 3>() += commonErrors(estimate->relative.T_a_b.translation());
 
   // From the images alone.
   LastTwo vision = solveLastTwo(vision_H, vision_b, 6);
@@ -134,6 +141,14 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
                           : estimate->scale_sigma < kObservableScale ? ScaleState::kObservable
                           : estimate->scale_sigma < kWeakScale       ? ScaleState::kWeak
                                                                      : ScaleState::kUnobservable;
+}
+
+bool contradicted(const MotionSummary& prior, const RelativeMotion& vision) {
+  const Eigen::Matrix3d& R = prior.T_a_b.linear();
+  const Eigen::Vector3d difference = logSO3(vision.T_a_b.linear() * R.transpose());
+  const Eigen::Matrix3d covariance =
+      R * prior.rotation_covariance * R.transpose() + vision.covariance.bottomRightCorner<3, 3>();
+  return difference.dot(covariance.ldlt().solve(difference)) > kContradiction * kContradiction;
 }
 
 PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& solve_options) {

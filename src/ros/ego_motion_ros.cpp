@@ -25,7 +25,9 @@ EgoMotionRos::EgoMotionRos(ros::NodeHandle node, ros::NodeHandle private_node)
     : node_(node), private_node_(private_node) {
   node_.setCallbackQueue(&callbacks_);
   private_node_.setCallbackQueue(&callbacks_);
+  const std::string tuning = std::string(LiveParameters::kNamespace) + "/";
   for (const std::string& name : applyParameters(readParameterServer(private_node_), &parameters_)) {
+    if (name.compare(0, tuning.size(), tuning) == 0) continue;  // of an earlier run
     ROS_WARN("%s: '%s' is no parameter of multicam_egomotion and has no effect", private_node_.getNamespace().c_str(),
              name.c_str());
   }
@@ -50,6 +52,9 @@ EgoMotionRos::EgoMotionRos(ros::NodeHandle node, ros::NodeHandle private_node)
     acquisition_ = std::make_unique<RigAcquisition>(node_, topics_, parameters_);
   }
   subscribe();
+  live_parameters_ = std::make_unique<LiveParameters>(private_node_, parameters_,
+                                                      [this](const Parameters& wanted) { return tune(wanted); });
+  if (parameters_.node.publish_tf) transform_watch_ = std::make_unique<TransformWatch>(node_, topics_.base_frame);
   spinner_ = std::make_unique<ros::AsyncSpinner>(2, &callbacks_);  // one may be waiting for a request to be served
   spinner_->start();
   worker_ = std::thread(&EgoMotionRos::work, this);
@@ -65,12 +70,14 @@ EgoMotionRos::~EgoMotionRos() {
 void EgoMotionRos::subscribe() {
   transport_ = std::make_unique<image_transport::ImageTransport>(node_);
   for (std::size_t i = 0; i < topics_.images.size(); ++i) {
-    watch_.add(topics_.images[i]);
     subscribeImage(static_cast<int>(i), topics_.images[i]);
+    watch_.add(topics_.images[i], [this, i] {
+      return i < image_subscribers_.size() ? image_subscribers_[i].getNumPublishers()
+                                           : subscribers_[i].getNumPublishers();
+    });
   }
   if (parameters_.odometry.use_imu) {
     const std::size_t watched = topics_.images.size();
-    watch_.add(topics_.imu);
     const boost::function<void(const sensor_msgs::ImuConstPtr&)> callback =
         [this, watched](const sensor_msgs::ImuConstPtr& message) {
           watch_.note(watched);
@@ -78,6 +85,7 @@ void EgoMotionRos::subscribe() {
         };
     subscribers_.push_back(
         node_.subscribe<sensor_msgs::Imu>(topics_.imu, 1000, callback, nullptr, ros::TransportHints().tcpNoDelay()));
+    watch_.add(topics_.imu, [imu = subscribers_.size() - 1, this] { return subscribers_[imu].getNumPublishers(); });
   }
   services_.push_back(private_node_.advertiseService("reset", &EgoMotionRos::reset, this));
   services_.push_back(private_node_.advertiseService("set_pose", &EgoMotionRos::setPose, this));
@@ -113,19 +121,39 @@ void EgoMotionRos::subscribeImage(int camera, const std::string& topic) {
   }
 }
 
-std::string EgoMotionRos::serve(std::function<void(EgoMotion&)> request) {
+std::string EgoMotionRos::inWorker(std::function<std::string()> request) {
   auto done = std::make_shared<std::promise<std::string>>();
   std::future<std::string> answer = done->get_future();
-  queue_->post([this, request, done] {
-    if (odometry_ == nullptr) {
-      done->set_value("the rig is not known yet");
-      return;
+  queue_->post([request = std::move(request), done = std::move(done)] {
+    try {
+      done->set_value(request());
+    } catch (const std::exception& error) {
+      done->set_value(error.what());
     }
-    request(*odometry_);
-    done->set_value("");
   });
-  const bool served = answer.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
-  return served ? answer.get() : "not served within 5 s";
+  if (answer.wait_for(std::chrono::seconds(5)) != std::future_status::ready) return "not served within 5 s";
+  try {
+    return answer.get();
+  } catch (const std::future_error&) {  // the queue was closed
+    return "the odometry is shutting down";
+  }
+}
+
+std::string EgoMotionRos::serve(std::function<void(EgoMotion&)> request) {
+  return inWorker([this, request = std::move(request)]() -> std::string {
+    if (odometry_ == nullptr) return "the rig is not known yet";
+    request(*odometry_);
+    return "";
+  });
+}
+
+std::string EgoMotionRos::tune(const Parameters& wanted) {
+  return inWorker([this, wanted]() -> std::string {
+    if (odometry_ != nullptr) odometry_->tune(wanted.odometry);
+    parameters_.odometry = wanted.odometry;  // for a rig that is not known yet
+    publishers_->show(wanted.node.publish_features, wanted.node.publish_points);
+    return "";
+  });
 }
 
 bool EgoMotionRos::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

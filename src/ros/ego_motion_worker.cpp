@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The worker thread of EgoMotionRos.
+#include <pthread.h>
 #include <ros/console.h>
 
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "multicam_egomotion/ros/ego_motion_ros.h"
 #include "multicam_egomotion/ros/image_conversion.h"
@@ -17,6 +20,7 @@ constexpr auto kWarningPeriod = std::chrono::seconds(5);
 }  // namespace
 
 void EgoMotionRos::work() {
+  pthread_setname_np(pthread_self(), "egomotion");  // as `top -H` shows it
   while (running_ && !configuration_failed_) {
     if (odometry_ == nullptr) acquireRig();
     const std::optional<Input> input = queue_->pop(std::chrono::milliseconds(100));
@@ -24,7 +28,7 @@ void EgoMotionRos::work() {
       if (input) process(*input);
     } catch (const std::exception& error) {
       ++diagnostics_->health().internal_errors;
-      ROS_ERROR_THROTTLE(5.0, "%s: %s", private_node_.getNamespace().c_str(), error.what());
+      input_fault_ = error.what();
     }
     if (diagnostics_->due()) report();
   }
@@ -54,6 +58,7 @@ void EgoMotionRos::start(const RigSetup& setup) {
   recent_images_ = std::make_unique<RecentImages>(setup.rig.size());
   diagnostics_->health().state = Health::State::kRunning;
   diagnostics_->health().message.clear();
+  last_frame_ = TopicWatch::Clock::now();
   for (const sensor_msgs::ImuConstPtr& sample : early_imu_) process(*sample);
   early_imu_.clear();
   ROS_INFO("%s: %d cameras, body frame %s", private_node_.getNamespace().c_str(), setup.rig.size(),
@@ -91,7 +96,7 @@ void EgoMotionRos::process(const ImageInput& input) {
     image.grey = input.raw ? greyPixels(*input.raw) : greyPixels(*input.compressed);
   } catch (const std::invalid_argument& error) {
     ++diagnostics_->health().undecodable_images;
-    ROS_WARN_THROTTLE(5.0, "%s: %s", topics_.images[input.camera].c_str(), error.what());
+    input_fault_ = topics_.images[input.camera] + ": " + error.what();
     return;
   }
   image.stamp_ns = toNanoseconds(input.raw ? input.raw->header.stamp : input.compressed->header.stamp);
@@ -102,6 +107,7 @@ void EgoMotionRos::process(const ImageInput& input) {
 }
 
 void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
+  if (!results.empty()) last_frame_ = TopicWatch::Clock::now();
   if (paused_) return;
   for (const EgoMotionResult& result : results) {
     publishers_->publish(result, odometry_->rig(), *recent_images_);
@@ -120,24 +126,41 @@ void EgoMotionRos::report() {
   health.dropped_images = queue_->droppedImages();
   health.dropped_imu = queue_->droppedImu();
   if (acquisition_ != nullptr) health.changed_camera_infos = acquisition_->changes();
+  health.faults.clear();
   if (odometry_ != nullptr) {
     health.counters = odometry_->counters();
     health.faults = odometry_->faults();
     health.gyroscope_check = odometry_->gyroscopeCheck();
   }
-  diagnostics_->publish();
-
-  const auto now = TopicWatch::Clock::now();
-  if (now - warned_ < kWarningPeriod || health.state == Health::State::kConfigError) return;
-  std::string missing = health.state == Health::State::kWaiting ? health.message : "";
-  for (const std::string& fault : health.faults) {
-    ROS_WARN("%s: %s", private_node_.getNamespace().c_str(), fault.c_str());
-    warned_ = now;
+  if (!input_fault_.empty()) health.faults.push_back(std::exchange(input_fault_, ""));
+  if (transform_watch_ != nullptr) {
+    for (std::string& conflict : transform_watch_->conflicts()) health.faults.push_back(std::move(conflict));
   }
-  for (const std::string& topic : health.silent_topics) missing += (missing.empty() ? "" : ", ") + topic;
-  if (missing.empty()) return;
-  ROS_WARN("%s: waiting for %s", private_node_.getNamespace().c_str(), missing.c_str());
-  warned_ = now;
+  diagnostics_->publish();
+  if (health.state != Health::State::kConfigError) warn();
+}
+
+// What is missing or wrong, every five seconds.
+void EgoMotionRos::warn() {
+  const auto now = TopicWatch::Clock::now();
+  if (now - warned_ < kWarningPeriod) return;
+  const Health& health = diagnostics_->health();
+  std::vector<std::string> lines = health.faults;
+  const bool waiting = health.state == Health::State::kWaiting;
+  if (waiting && !health.message.empty()) lines.push_back("waiting for " + health.message);
+  if (!health.silent_topics.empty()) {
+    std::string silent;
+    for (const std::string& topic : health.silent_topics) silent += (silent.empty() ? "" : ", ") + topic;
+    lines.push_back("no data on " + silent);
+  } else if (lines.empty() && !waiting && !health.paused && now - last_frame_ >= kWarningPeriod) {
+    std::ostringstream text;
+    text << "no new frame, although data arrive: " << health.counters.rejected_images << " images rejected, "
+         << health.undecodable_images << " not decodable, " << health.counters.late_images << " late; "
+         << health.counters.rejected_imu << " IMU samples rejected";
+    lines.push_back(text.str());
+  }
+  for (const std::string& line : lines) ROS_WARN("%s: %s", private_node_.getNamespace().c_str(), line.c_str());
+  if (!lines.empty()) warned_ = now;
 }
 
 }  // namespace multicam_egomotion

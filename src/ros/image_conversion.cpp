@@ -28,10 +28,16 @@ cv::Mat greyPixels(const sensor_msgs::Image& image) {
   if (image.is_bigendian && CV_ELEM_SIZE1(type) > 1) {
     throw std::invalid_argument("found big-endian " + image.encoding + ", expected little-endian");
   }
-  const cv::Mat shared(static_cast<int>(image.height), static_cast<int>(image.width), type,
-                       const_cast<std::uint8_t*>(image.data.data()), image.step);
-  const cv::Mat grey = toGrey(shared, image.encoding);
-  return grey.data == shared.data ? grey.clone() : grey;  // the message may end before the odometry is done with it
+  try {
+    const cv::Mat shared(static_cast<int>(image.height), static_cast<int>(image.width), type,
+                         const_cast<std::uint8_t*>(image.data.data()), image.step);
+    const cv::Mat grey = toGrey(shared, image.encoding);
+    return grey.data == shared.data ? grey.clone() : grey;  // the message may end before the odometry is done with it
+  } catch (const cv::Exception& error) {  // a step that is no whole number of 16-bit pixels, for instance
+    throw std::invalid_argument("found " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                                " pixels of " + image.encoding + " with a step of " + std::to_string(image.step) +
+                                ", refused by OpenCV: " + error.err);
+  }
 }
 
 cv::Mat greyPixels(const sensor_msgs::CompressedImage& image) {

@@ -11,6 +11,7 @@ template <class Kind>
 void InputQueue::pushBounded(Input input, std::size_t limit, std::size_t* count, std::uint64_t* dropped) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (closed_) return;
     if (*count == limit) {
       inputs_.erase(std::find_if(inputs_.begin(), inputs_.end(),
                                  [](const Input& waiting) { return std::holds_alternative<Kind>(waiting); }));
@@ -34,6 +35,7 @@ void InputQueue::push(sensor_msgs::ImuConstPtr sample) {
 void InputQueue::post(Request request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (closed_) return;
     inputs_.push_front(std::move(request));
   }
   changed_.notify_one();
@@ -51,9 +53,11 @@ std::optional<Input> InputQueue::pop(std::chrono::milliseconds timeout) {
 }
 
 void InputQueue::close() {
+  std::deque<Input> unserved;  // ends outside of the lock
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
+    unserved.swap(inputs_);
   }
   changed_.notify_all();
 }

@@ -22,6 +22,8 @@ void visitParameters(Parameters& p, Visitor& v) {
   v("base_frame", n.base_frame);
   v("publish_tf", n.publish_tf);
   v("publish_previous_tf", n.publish_previous_tf);
+  v("publish_features", n.publish_features);
+  v("publish_points", n.publish_points);
   v("path_period_s", n.path_period_s, 0, 3600);
   v("path_length", n.path_length, 2, 1000000);
   v("start_paused", n.start_paused);
@@ -55,7 +57,7 @@ void visitParameters(Parameters& p, Visitor& v) {
   FeatureTrackerOptions& t = o.tracker;
   v("tracker/features_per_camera", t.features_per_camera, 4, 10000);
   v("tracker/min_distance_px", t.min_distance_px, 1, 1000);
-  v("tracker/fast_threshold", t.fast_threshold, 1, 255);
+  v("tracker/fast_threshold", t.fast_threshold, 1, 254);
   v("tracker/patch_size_px", t.patch_size_px, 7, 21);
   v("tracker/pyramid_levels", t.pyramid_levels, 1, 6);
   v("tracker/max_forward_backward_error_px", t.max_forward_backward_error_px, 0.01, 100);
@@ -103,6 +105,7 @@ void visitParameters(Parameters& p, Visitor& v) {
   v("window/min_pixel_sigma", w.min_pixel_sigma, 0.001, 100);
   v("window/max_pixel_sigma", w.max_pixel_sigma, 0.001, 100);
   v("window/outlier_sigmas", w.outlier_sigmas, 1, 100);
+  v("window/min_distance", w.min_distance, 0, 1000);
   v("window/bundle/max_iterations", w.bundle.max_iterations, 1, 1000);
   v("window/bundle/relative_decrease", w.bundle.relative_decrease, 0, 1);
   v("window/bundle/inverse_distance_sigma", w.bundle.inverse_distance_sigma, 0.01, 1000);

@@ -154,11 +154,19 @@ XmlRpcValue scalar(const YAML::Node& node) {
   return XmlRpcValue(node.Scalar());
 }
 
-void flatten(const std::string& prefix, const YAML::Node& node, ParameterMap* result) {
+/// Aliases can make a short file deep or long without end.
+constexpr int kMaxDepth = 10;
+constexpr std::size_t kMaxValues = 1000;
+
+void flatten(const std::string& prefix, const YAML::Node& node, int depth, ParameterMap* result) {
+  if (depth > kMaxDepth || result->size() > kMaxValues) {
+    throw std::invalid_argument("'" + prefix.substr(0, 100) + "': found more than " + std::to_string(kMaxDepth) +
+                                " levels or " + std::to_string(kMaxValues) + " values, expected parameters");
+  }
   if (node.IsMap()) {
     for (const auto& child : node) {
       const std::string name = child.first.as<std::string>();
-      flatten(prefix.empty() ? name : prefix + "/" + name, child.second, result);
+      flatten(prefix.empty() ? name : prefix + "/" + name, child.second, depth + 1, result);
     }
   } else if (node.IsSequence()) {
     XmlRpcValue list;
@@ -184,7 +192,7 @@ ParameterMap readParameterFile(const std::string& path) {
   try {
     const YAML::Node root = YAML::LoadFile(path);
     if (!root.IsMap() && !root.IsNull()) throw std::invalid_argument(path + ": found no names, expected `name: value`");
-    flatten("", root, &result);
+    flatten("", root, 0, &result);
   } catch (const YAML::BadFile&) {
     throw std::invalid_argument(path + ": cannot be read, expected a YAML file of parameters");
   } catch (const YAML::Exception& error) {

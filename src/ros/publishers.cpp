@@ -34,8 +34,9 @@ void Publishers::publish(const EgoMotionResult& result, const CameraRig& rig, co
   }
   if (result.has_relative_pose) relative_pose_.publish(toRelativePose(result, frames_));
   publishEgoMotion(ego_motion_, result, frames_);
-  if (result.has_relative_pose && points_.getNumSubscribers() > 0) points_.publish(toPointCloud(result, frames_));
-  if (features_.getNumSubscribers() > 0 && !result.image_stamps_ns.empty()) {
+  if (options_.publish_points && result.has_relative_pose && points_.getNumSubscribers() > 0)
+    points_.publish(toPointCloud(result, frames_));
+  if (options_.publish_features && features_.getNumSubscribers() > 0 && !result.image_stamps_ns.empty()) {
     std_msgs::Header header;
     header.stamp = toRosTime(result.stamp_ns);
     header.frame_id = rig.camera(0).frame_id;

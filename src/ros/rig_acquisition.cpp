@@ -46,7 +46,8 @@ std::optional<RigSetup> RigAcquisition::tryBuild(std::string* missing) {
   std::vector<std::string> frames;
   for (std::size_t i = 0; i < infos_.size(); ++i) {
     if (infos_[i] == nullptr) {
-      append("CameraInfo on " + subscribers_[i].getTopic(), missing);
+      const bool published = subscribers_[i].getNumPublishers() > 0;
+      append("CameraInfo on " + subscribers_[i].getTopic() + (published ? "" : " (no publisher)"), missing);
     } else {
       infos.push_back(*infos_[i]);
       frames.push_back(infos_[i]->header.frame_id);

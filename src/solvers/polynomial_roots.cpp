@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "instruction_sets.h"
@@ -15,8 +16,10 @@ namespace multicam_egomotion {
 
 namespace build_instructions {
 namespace {
+#include "lanes.inc"
+//
 #include "real_roots.inc"
-}
+}  // namespace
 }  // namespace build_instructions
 
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
@@ -24,13 +27,17 @@ namespace {
 #pragma GCC target("avx2,fma")
 namespace avx2_instructions {
 namespace {
+#include "lanes.inc"
+//
 #include "real_roots.inc"
-}
+}  // namespace
 }  // namespace avx2_instructions
 #pragma GCC pop_options
 #endif
 
 namespace {
+
+constexpr double kLastStep = 1e-6;
 
 template <typename LaneRoots>
 RealRoots toRealRoots(const LaneRoots& lanes) {
@@ -61,12 +68,12 @@ RealRoots findRealRoots(const std::array<double, 7>& coefficients, int degree) {
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
   if (processorHasAvx2()) {
     avx2_instructions::LaneRoots roots;
-    avx2_instructions::realRoots(a, degree, 0.0, true, roots);
+    avx2_instructions::findRoots(a, degree, 0.0, kLastStep, roots);
     return toRealRoots(roots);
   }
 #endif
   build_instructions::LaneRoots roots;
-  build_instructions::realRoots(a, degree, 0.0, true, roots);
+  build_instructions::findRoots(a, degree, 0.0, kLastStep, roots);
   return toRealRoots(roots);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Odometry of a recorded bag without a roscore: the class and the parameters of the nodelet, as fast as the machine
-// can. Exit code 1 on failure, 2 when there was no pose.
+// can. SIGINT and SIGTERM end the run early with complete files. Exit code 1 on failure, 2 when there was no pose.
 #include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
@@ -11,9 +11,11 @@
 
 #include "bag_runner/bag_replay.h"
 #include "bag_runner/command_line.h"
+#include "bag_runner/output_bag.h"
 #include "bag_runner/run_report.h"
 #include "bag_runner/trajectory_files.h"
 #include "multicam_egomotion/ros/ego_motion_message.h"
+#include "stop_signals.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -23,7 +25,7 @@ struct Outputs {
   Outputs(const BagCommand& command, const Eigen::Isometry3d& T_body_cam0, const FrameNames& names) : frames(names) {
     if (!command.trajectory.empty()) tum.emplace(command.trajectory);
     if (!command.kitti.empty()) kitti.emplace(command.kitti, T_body_cam0);
-    if (!command.output_bag.empty()) bag.emplace(command.output_bag, rosbag::bagmode::Write);
+    if (!command.output_bag.empty()) bag.emplace(command.output_bag);
   }
 
   void write(const EgoMotionResult& result, const ros::Time& time, RunReport* report) {
@@ -35,14 +37,17 @@ struct Outputs {
       if (tum) tum->write(result.stamp_ns, result.T_odom_body.pose);
       if (kitti && stamps[0] != 0) kitti->addPose(stamps[0], result.T_odom_body.pose);
     }
-    if (!bag) return;
-    writeEgoMotion(&*bag, "ego_motion", time, result, frames);
-    if (result.has_relative_pose) bag->write("relative_pose", time, toRelativePose(result, frames));
+    if (bag) bag->write([&](rosbag::Bag& output) { writeMessages(result, time, &output); });
+  }
+
+  void writeMessages(const EgoMotionResult& result, const ros::Time& time, rosbag::Bag* output) const {
+    writeEgoMotion(output, "ego_motion", time, result, frames);
+    if (result.has_relative_pose) output->write("relative_pose", time, toRelativePose(result, frames));
     if (!result.has_pose) return;
-    bag->write("odometry", time, toOdometry(result, frames));
+    output->write("odometry", time, toOdometry(result, frames));
     tf2_msgs::TFMessage transforms;
     transforms.transforms.push_back(toTransform(result, frames));
-    bag->write("/tf", time, transforms);
+    output->write("/tf", time, transforms);
   }
 
   void close() {
@@ -54,7 +59,7 @@ struct Outputs {
   FrameNames frames;
   std::optional<TumFile> tum;
   std::optional<KittiFile> kitti;
-  std::optional<rosbag::Bag> bag;
+  std::optional<OutputBag> bag;
 };
 
 Parameters readParameters(const BagCommand& command) {
@@ -81,10 +86,15 @@ int run(const BagCommand& command) {
               &report,
               [&outputs](int camera, std::int64_t stamp_ns) {
                 if (outputs.kitti && camera == 0) outputs.kitti->addImage(stamp_ns);
-              });
+              },
+              &StopSignals::received);
   outputs.close();
   if (!command.report.empty()) report.writeJson(command.report, odometry.counters(), parameters);
   std::printf("%s", report.summary().c_str());
+  if (report.interrupted) {
+    std::fprintf(stderr, "egomotion_bag: interrupted; the files hold what came before\n");
+    return 0;
+  }
   if (report.poses == 0) {
     std::fprintf(stderr, "egomotion_bag: no pose in %llu images and %llu IMU samples\n",
                  static_cast<unsigned long long>(report.images), static_cast<unsigned long long>(report.imu_samples));
@@ -98,6 +108,7 @@ int run(const BagCommand& command) {
 
 int main(int argc, char** argv) {
   try {
+    multicam_egomotion::StopSignals::watch();
     ros::Time::init();
     multicam_egomotion::BagCommand command;
     if (!multicam_egomotion::parseCommandLine(argc, argv, &command)) return 0;

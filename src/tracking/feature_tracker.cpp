@@ -36,9 +36,7 @@ class FeatureTracker::Impl {
         matcher_(rig_, crossCameraOptions(options)),
         border_px_(options.patch_size_px / 2 + 1) {
     check(options);
-    for (const RigCamera& camera : rig_.cameras()) {
-      detectors_.emplace_back(cv::Size(camera.model.width(), camera.model.height()), cornerDetectorOptions(options));
-    }
+    makeDetectors();
     masks_.resize(rig_.size());
     current_.resize(rig_.size());
     previous_.resize(rig_.size());
@@ -58,6 +56,20 @@ class FeatureTracker::Impl {
                                   " of CV_8UC1");
     }
     masks_[camera] = mask.clone();
+  }
+
+  void setDetection(const FeatureTrackerOptions& options) {
+    FeatureTrackerOptions changed = options_;
+    changed.features_per_camera = options.features_per_camera;
+    changed.fast_threshold = options.fast_threshold;
+    check(changed);
+    options_ = changed;
+    makeDetectors();
+    std::vector<int> kept(rig_.size(), 0);
+    const auto surplus = std::remove_if(features_.begin(), features_.end(), [&](const Feature& feature) {
+      return ++kept[feature.owner] > options_.features_per_camera;
+    });
+    features_.erase(surplus, features_.end());
   }
 
   TrackedFrame track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
@@ -113,6 +125,13 @@ class FeatureTracker::Impl {
   const FeatureTrackerCounters& counters() const { return counters_; }
 
  private:
+  void makeDetectors() {
+    detectors_.clear();
+    for (const RigCamera& camera : rig_.cameras()) {
+      detectors_.emplace_back(cv::Size(camera.model.width(), camera.model.height()), cornerDetectorOptions(options_));
+    }
+  }
+
   void takeImages(const FrameSet& frames) {
     current_.assign(rig_.size(), FlowPyramid());
     for (const CameraImage& image : frames.images) {
@@ -398,6 +417,7 @@ FeatureTracker::FeatureTracker(FeatureTracker&&) noexcept = default;
 FeatureTracker& FeatureTracker::operator=(FeatureTracker&&) noexcept = default;
 
 void FeatureTracker::setMask(int camera, const cv::Mat& mask) { impl_->setMask(camera, mask); }
+void FeatureTracker::setDetection(const FeatureTrackerOptions& options) { impl_->setDetection(options); }
 TrackedFrame FeatureTracker::track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
                                    const std::vector<Eigen::Isometry3d>& T_body_cam) {
   return impl_->track(frames, T_prev_cur, T_body_cam);

@@ -9,4 +9,4 @@ case "$("${formatter:-false}" --version 2>/dev/null || true)" in
   *"version 14."*) ;;
   *) echo "clang-format 14 not found"; exit 77 ;;
 esac
-find include src test -name '*.h' -o -name '*.cpp' -o -name '*.inc' | sort | xargs "$formatter" --dry-run -Werror
+find include src python examples test -name '*.h' -o -name '*.cpp' -o -name '*.inc' | sort | xargs "$formatter" --dry-run -Werror

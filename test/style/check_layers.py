@@ -37,7 +37,7 @@ def faults(path, layer):
 
 def main():
     count = 0
-    for root in ("include/multicam_egomotion", "src", "test", "scripts"):
+    for root in ("include/multicam_egomotion", "src", "python", "examples", "test", "scripts"):
         for path in sorted((PACKAGE / root).rglob("*")):
             if path.suffix not in (".h", ".cpp", ".inc", ".py", ".sh", ".bash"):
                 continue

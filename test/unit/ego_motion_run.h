@@ -25,11 +25,11 @@ struct Recording {
 class RecordingPlayer {
  public:
   using Alter = std::function<void(int frame, std::vector<CameraImage>* images)>;
+  static constexpr std::int64_t kLag = 10000000;  ///< the IMU is ahead of the images by so much when they arrive [ns]
 
   explicit RecordingPlayer(const Recording& recording) : recording_(recording) {}
 
   std::vector<EgoMotionResult> play(EgoMotion* odometry, int first, int last, const Alter& alter = nullptr) {
-    constexpr std::int64_t kLag = 10000000;  // the IMU is ahead of the images by so much when they arrive [ns]
     std::vector<EgoMotionResult> results;
     for (int frame = first; frame < last; ++frame) {
       const std::int64_t now = recording_.stamp(frame) + kLag;

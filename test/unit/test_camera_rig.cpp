@@ -118,6 +118,10 @@ TEST(CameraRig, InvalidRigsThrowWithAMessage) {
   expectRefusal({undefined}, "'undefined' is not a rigid motion");
 
   expectRefusal({makeCamera("millimetres", kEuroc, 0, {0, 110, 0})}, "'millimetres' puts it 110");
+
+  RigCamera nanoseconds = makeCamera("nanoseconds", kEuroc, 0, {0, 0, 0});
+  nanoseconds.time_offset_s = 3e6;
+  expectRefusal({nanoseconds}, "time_offset_s of camera 'nanoseconds' is 3000000");
 }
 
 }  // namespace

@@ -59,5 +59,12 @@ TEST(Coasting, TheRateIsThatOfTheShortestInterval) {
   EXPECT_EQ(coasting.period(), 3 * kPeriod);  // the camera has become slower
 }
 
+TEST(Coasting, StampsThatNearlyAgreeAreNoRate) {
+  Coasting coasting(1.0);
+  coasting.markFrame(kStart, true);
+  coasting.markFrame(kStart + 1, true);
+  EXPECT_LE(ticksUntil(kStart + 20 * kPeriod, &coasting), 1001);
+}
+
 }  // namespace
 }  // namespace multicam_egomotion

@@ -36,13 +36,14 @@ TEST(ImuBuffer, RefusesAndCountsUnusableSamples) {
   EXPECT_FALSE(buffer.add(sampleAt(-7, 2)));
   EXPECT_FALSE(buffer.add(sampleAt(20, std::numeric_limits<double>::quiet_NaN())));
   EXPECT_FALSE(buffer.add(sampleAt(20, std::numeric_limits<double>::infinity())));
+  EXPECT_FALSE(buffer.add(sampleAt(20, 1e30)));
   EXPECT_TRUE(buffer.add(sampleAt(20, 3)));
   EXPECT_EQ(buffer.size(), 2u);
   EXPECT_EQ(buffer.faults().duplicate, 1u);
   EXPECT_EQ(buffer.faults().out_of_order, 1u);
   EXPECT_EQ(buffer.faults().zero_stamp, 2u);
-  EXPECT_EQ(buffer.faults().not_finite, 2u);
-  EXPECT_EQ(buffer.faults().total(), 6u);
+  EXPECT_EQ(buffer.faults().not_finite, 3u);
+  EXPECT_EQ(buffer.faults().total(), 7u);
 }
 
 TEST(ImuBuffer, AFrozenSensorIsAGap) {

@@ -357,6 +357,74 @@ TEST(InertialState, WidensOverAGapAndSaysSo) {
   EXPECT_FALSE(state.propagateTo(kStart, whole));
 }
 
+TEST(InertialState, ASilentImuIsAGapHoweverOftenItIsAsked) {
+  const Trajectory motion;
+  ImuBuffer silent, holed;
+  for (const ImuSample& sample : samplesOver(motion, -0.5, 10)) {
+    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kStart);
+    if (t <= 5) silent.add(sample);
+    if (t <= 5 || t >= 6.5) holed.add(sample);
+  }
+  InertialState seldom = started(motion);
+  followOver(motion, 0, 5, &seldom);
+  InertialState often = seldom, across = seldom;
+  EXPECT_FALSE(seldom.propagateTo(kStart + 6500000000, silent));
+  double sigma = 0, tilt_sigma = 0;
+  for (int i = 1; i <= 60; ++i) {
+    const double t = 5 + i * 0.025;
+    EXPECT_FALSE(often.propagateTo(kStart + std::llround(t * 1e9), silent));
+    across.propagateTo(kStart + std::llround(t * 1e9), holed);
+    EXPECT_GT(often.displacementSinceFrameCovariance().trace(), sigma);  // nothing is learnt from what is held
+    EXPECT_GT(often.tiltSigma(), tilt_sigma);
+    sigma = often.displacementSinceFrameCovariance().trace();
+    tilt_sigma = often.tiltSigma();
+  }
+  const Eigen::Vector3d p = motion.attitude(5).transpose() * (motion.position(6.5) - motion.position(5));
+  for (const InertialState* state : {&seldom, &often, &across}) {
+    const Eigen::Vector3d error = p - state->displacementSinceFrame();
+    EXPECT_LT(error.dot(state->displacementSinceFrameCovariance().inverse() * error), 14.2);
+    EXPECT_LT(tiltError(*state, motion.attitude(6.5)).norm(), 3 * state->tiltSigma());
+    EXPECT_GT(state->tiltSigma(), 20 * kDegree);
+  }
+  EXPECT_NEAR(often.tiltSigma(), seldom.tiltSigma(), 0.1 * seldom.tiltSigma());
+  propagateOver(motion, 6.5, 6.6, &across);
+  followOver(motion, 6.6, 10, &across);
+  EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 3 * across.tiltSigma());
+  EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 2 * kDegree);
+}
+
+TEST(InertialState, VisionWinsOverABrokenGyroscope) {
+  // Cut at 0.3 rad/s for a second, as by a range that is too small.
+  Trajectory motion;
+  motion.vigour = 1.5;
+  InertialState state = started(motion);
+  followOver(motion, 0, 8, &state);
+  const Eigen::Vector3d bias = state.gyroscopeBias();
+  const auto follow = [&](int frame, bool cut) {
+    const double t1 = frame / 20.0, t2 = (frame + 1) / 20.0;
+    for (int i = frame * 10 + 1; i <= frame * 10 + 10; ++i) {
+      ImuSample sample = motion.sample(i / kRateHz);
+      if (cut) sample.angular_velocity = sample.angular_velocity.cwiseMax(-0.3).cwiseMin(0.3);
+      state.propagate(sample);
+    }
+    const Eigen::Matrix3d R = motion.attitude(t1).transpose() * motion.attitude(t2);
+    const Eigen::Vector3d off = logSO3(state.rotationSinceFrame().transpose() * R);
+    const double nees = off.dot(state.rotationSinceFrameCovariance().inverse() * off);
+    state.correctRelativeRotation(R, isotropic(0.05 * kDegree));
+    state.correctVelocity(motion.attitude(t2).transpose() * motion.velocity(t2), isotropic(0.05));
+    state.markFrame();
+    return nees;
+  };
+  int surprises = 0;
+  for (int frame = 160; frame < 180; ++frame) surprises += follow(frame, true) > 16.3;
+  EXPECT_GE(state.rotationCounts().recoveries, 1u);
+  EXPECT_LE(surprises, 8);
+  for (int frame = 180; frame < 220; ++frame) follow(frame, false);
+  EXPECT_LT(tiltError(state, motion.attitude(11)).norm(), 3 * state.tiltSigma());
+  EXPECT_LT(tiltError(state, motion.attitude(11)).norm(), 1.5 * kDegree);
+  EXPECT_LT((state.gyroscopeBias() - bias).norm(), 0.02);
+}
+
 TEST(InertialState, KeepsTheVerticalThroughALongOutageOfVision) {
   const Trajectory motion{1.0, {0.02, -0.01, 0.015}};
   InertialState state = started(motion);

@@ -271,5 +271,72 @@ TEST(InertialMotion, RestartGoesOnAtAnotherTime) {
   EXPECT_GT(run.model_->tiltSigma(), 0.16);
 }
 
+TEST(InertialMotion, LateSamplesAreWorkedIn) {
+  InertialRun in_time("handheld_stereo", 6.0, 1.0), late("handheld_stereo", 6.0, 1.0);
+  late.buffer_.clear();
+  std::size_t next = 0;
+  const auto arrive = [&](std::int64_t until_ns) {
+    while (next < late.imu_.size() && late.imu_[next].sample.stamp_ns <= until_ns) {
+      late.buffer_.add(late.imu_[next++].sample);
+    }
+  };
+  const Simulator& simulator = late.simulator_;
+  arrive(simulator.frameStamp(1));
+  for (InertialRun* run : {&in_time, &late}) ASSERT_TRUE(run->model_->initialize(simulator.frameStamp(0)));
+  double rotation = 0.0, displacement = 0.0;
+  int count = 0;
+  for (int frame = 1; frame <= 110; ++frame) {
+    arrive(simulator.frameStamp(frame) - 300000000);
+    for (InertialRun* run : {&in_time, &late}) run->model_->advanceTo(simulator.frameStamp(frame));
+    const MotionSummary summary = late.model_->motionSinceFrame();
+    const Eigen::Isometry3d T = late.step(frame);
+    const Eigen::Vector3d r = logSO3(summary.T_a_b.linear().transpose() * T.linear());
+    const Eigen::Vector3d p = T.translation() - summary.T_a_b.translation();
+    rotation += r.dot(summary.rotation_covariance.inverse() * r) / 3.0;
+    displacement += p.dot(summary.translation_covariance.inverse() * p) / 3.0;
+    ++count;
+    for (InertialRun* run : {&in_time, &late}) {
+      run->model_->correct(seen(T, 5e-4, 3e-4), true);
+      run->model_->markFrame();
+    }
+  }
+  EXPECT_LT(rotation / count, 2.0);
+  EXPECT_LT(displacement / count, 2.0);
+  // What is known of gravity and biases is that of 0.3 s before.
+  EXPECT_LT(late.tiltError(110), 0.03);
+  EXPECT_LT(late.tiltError(110), 3.0 * late.model_->tiltSigma());
+  // Once the samples are there nothing is left of their being late.
+  arrive(simulator.frameStamp(112));
+  for (InertialRun* run : {&in_time, &late}) run->model_->advanceTo(simulator.frameStamp(111));
+  EXPECT_EQ(late.model_->up(), in_time.model_->up());
+  EXPECT_EQ(late.model_->motionSinceFrame().translation_covariance,
+            in_time.model_->motionSinceFrame().translation_covariance);
+}
+
+TEST(InertialMotion, ASilentImuLeavesWhatVisionSees) {
+  InertialRun run("handheld_stereo", 8.0, 1.0);
+  std::vector<ImuSample> samples;
+  run.buffer_.samplesBetween(0, run.simulator_.frameStamp(60), &samples);
+  run.buffer_.clear();
+  for (const ImuSample& sample : samples) run.buffer_.add(sample);
+  ASSERT_TRUE(run.model_->initialize(run.simulator_.frameStamp(0)));
+  run.run(1, 60, true, true);
+  run.model_->markFrame();
+  double rotation = 0.0;
+  for (int frame = 61; frame <= 150; ++frame) {
+    run.model_->advanceTo(run.simulator_.frameStamp(frame));
+    const MotionSummary summary = run.model_->motionSinceFrame();
+    const Eigen::Isometry3d T = run.step(frame);
+    const Eigen::Vector3d r = logSO3(summary.T_a_b.linear().transpose() * T.linear());
+    rotation += r.dot(summary.rotation_covariance.inverse() * r) / 3.0 / 90.0;
+    EXPECT_LT(r.norm(), 0.03);  // goes on turning as vision saw
+    run.model_->correct(seen(T, 5e-4, 3e-4), true);
+    run.model_->markFrame();
+  }
+  EXPECT_LT(rotation, 2.0);
+  EXPECT_LT(run.tiltError(150), 3.0 * run.model_->tiltSigma());
+  EXPECT_LT(run.tiltError(150), 0.05);
+}
+
 }  // namespace
 }  // namespace multicam_egomotion

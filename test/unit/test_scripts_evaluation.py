@@ -206,3 +206,63 @@ class ConsistencyTest(TemporaryDirectoryTest):
         values = self.report(boast=2.0)["nees"]["frame to frame"]["rotation"]
         self.assertAlmostEqual(values["mean_per_dof"], 4.0, delta=0.5)
         self.assertLess(values["inside_95_percent"], 80.0)
+
+
+class SummaryTest(TemporaryDirectoryTest):
+    """Reports of several bags in a directory."""
+
+    def write(self, name, content):
+        (self.dir / name).write_text(content if isinstance(content, str) else json.dumps(content))
+
+    @staticmethod
+    def run_report(poses=100, p99_ms=12.5, late_images=2):
+        return {"frames": 100, "poses": poses, "cpu_s": 3.0, "peak_memory_mb": 80.0,
+                "stages": {"frame": {"count": 100, "median_ms": 8.0, "p99_ms": p99_ms}},
+                "faults": {"late_images": late_images, "time_jumps": 1}}
+
+    def evaluation_report(self):
+        truth = winding_trajectory()
+        estimate = Trajectory(truth.positions * 1.01, truth.rotations, truth.stamps_ns)
+        return evaluate.evaluate(truth, estimate)
+
+    def test_reports_of_both_tools_become_one_line(self):
+        self.write("town.json", self.run_report())
+        self.write("town.evaluation.json", self.evaluation_report())
+        self.write("town.log", "100 frames\n")
+        self.write("forest.report.json", self.run_report(p99_ms=20.5))
+        self.write("settings.json", {"a": 1})
+        self.write("readme.txt", "not a report")
+        code, out, err = run(evaluate.main, "--summary", self.dir, "--json", self.dir.parent / f"{self.dir.name}.out")
+        merged = pathlib.Path(f"{self.dir}.out")
+        self.addCleanup(merged.unlink)
+        self.assertEqual(code, 0, err)
+        self.assertRegex(out, r"\ntown +100 +3 +12.5 ")
+        self.assertRegex(out, r"\nforest +100 +3 +20.5 ")
+        self.assertRegex(out, r"\nmedian +100 +3 +16.5 ")
+        self.assertRegex(out, r" 0\.99\d\d ")  # scale of the estimate to the truth
+        self.assertIn("2 bags, 0 failed", out)
+        summary = json.loads(merged.read_text())
+        self.assertEqual(set(summary["bags"]), {"town", "forest"})
+        self.assertEqual(set(summary["bags"]["town"]), {"run", "evaluation"})
+        self.assertEqual(summary["medians"]["p99_ms"], 16.5)
+
+    def test_failed_bags_are_named(self):
+        self.write("good.json", self.run_report())
+        self.write("good.log", "fine\n")
+        self.write("no_poses.json", self.run_report(poses=0))
+        self.write("crashed.log", "some frames\negomotion_bag: no images in the bag\n\n")
+        self.write("silent.log", "")
+        self.write("cut.json", '{"frames": 1')
+        code, out, _ = run(evaluate.main, "--summary", self.dir)
+        self.assertEqual(code, 1)
+        self.assertIn("5 bags, 4 failed:", out)
+        self.assertIn("  no_poses: no pose\n", out)
+        self.assertIn("  crashed: egomotion_bag: no images in the bag\n", out)
+        self.assertIn("  silent: no report, and nothing in its log", out)
+        self.assertRegex(out, r"  cut: cut\.json is no JSON")
+
+    def test_a_directory_without_reports_is_refused(self):
+        self.write("settings.json", {"a": 1})
+        code, _, err = run(evaluate.main, "--summary", self.dir)
+        self.assertEqual(code, 1)
+        self.assertIn("found no report of egomotion_bag or evaluate.py among 1 .json files", err)

@@ -90,6 +90,21 @@ TEST(SimulatorScenario, StopAndGoStandsStillForTenSeconds) {
   EXPECT_GT(trajectory.at(18.0).velocity.norm(), 1.0);
 }
 
+TEST(SimulatorScenario, LoopClosesEveryMinute) {
+  const Scenario scenario = makeScenario("loop");
+  EXPECT_EQ(scenario.options.duration_s, 60.0);
+  for (const double t : {0.0, 7.3, 31.0}) {
+    const BodyState first = scenario.trajectory.at(t);
+    for (const double later : {60.0, 3540.0}) {
+      const BodyState again = scenario.trajectory.at(t + later);
+      EXPECT_LT((first.T_world_body.matrix() - again.T_world_body.matrix()).norm(), 1e-9);
+      EXPECT_LT((first.velocity - again.velocity).norm(), 1e-9);
+      EXPECT_LT((first.acceleration - again.acceleration).norm(), 1e-8);
+      EXPECT_LT((first.angular_velocity - again.angular_velocity).norm(), 1e-9);
+    }
+  }
+}
+
 TEST(SimulatorScenario, StraightLineNeverTurns) {
   const Trajectory trajectory = makeScenario("straight_line").trajectory;
   const BodyState first = trajectory.at(0.0);

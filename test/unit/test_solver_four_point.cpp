@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +36,8 @@ const RelativePose* nearest(const PoseCandidates<6>& poses, const Eigen::Matrix3
   });
 }
 
-/// Largest residual of the generalized epipolar constraint (b2), relative to the size of rig and translation.
+/// Largest residual of the generalized epipolar constraint (b2), relative to
+/// the size of rig and translation.
 double residual(const SimulatedSample& s, const RelativePose& pose) {
   double largest = 0;
   for (const RayCorrespondence& ray : s.rays) {
@@ -50,7 +52,8 @@ ZAlignedFrames frames(Solver solver, const SimulatedSample& s) {
   return {rotationToZ(s.axis.axis), rotationToZ(s.axis.axis), true};
 }
 
-/// det of the 4x4 system in [t; 1] at the rotation angle θ: the classical formulation, independent of the depths.
+/// det of the 4x4 system in [t; 1] at the rotation angle θ: the classical
+/// formulation, independent of the depths.
 long double determinant4(const SimulatedSample& s, const ZAlignedFrames& aligned, long double theta) {
   Matrix3l Rz;
   Rz << std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta), 0, 0, 0, 1;
@@ -70,39 +73,6 @@ long double determinant4(const SimulatedSample& s, const ZAlignedFrames& aligned
 double angleOf(const ZAlignedFrames& aligned, const Eigen::Matrix3d& R) {
   const Eigen::Matrix3d Rz = aligned.R_aligned_body2 * R * aligned.R_aligned_body1.transpose();
   return std::atan2(Rz(1, 0) - Rz(0, 1), Rz(0, 0) + Rz(1, 1));
-}
-
-TEST(FourPoint, FindsTheTruthToRounding) {
-  const double ranges[][2] = {{0, 0.3}, {0, 10}, {0, 60}, {179, 180}, {180, 180}};
-  constexpr int kTrials = 1000;
-  for (Solver solver : {Solver::kVertical, Solver::kAxis}) {
-    for (const auto& range : ranges) {
-      std::vector<double> errors, translation_errors;
-      for (SampleKind kind : kKinds) {
-        SampleSimulator simulator(3);
-        for (Motion motion : kMotions) {
-          for (int i = 0; i < kTrials; ++i) {
-            const SimulatedSample s = simulator.sample(kind, motion, range[0] * kDegree, range[1] * kDegree);
-            const PoseCandidates<6> poses = solve(solver, s);
-            ASSERT_EQ(poses.status, SolverStatus::kOk);
-            ASSERT_GT(poses.size(), 0);
-            const RelativePose* best = nearest(poses, s.R);
-            errors.push_back(rotationError(best->R, s.R));
-            translation_errors.push_back((best->t - s.t).norm());
-          }
-        }
-      }
-      std::sort(errors.begin(), errors.end());
-      std::sort(translation_errors.begin(), translation_errors.end());
-      const size_t n = errors.size();
-      SCOPED_TRACE(testing::Message() << "solver " << static_cast<int>(solver) << " up to " << range[1] << " deg");
-      EXPECT_LE(errors[n / 2], std::pow(10, -14.5));
-      // At rotations near zero the vertical solver has its second root, R = I of nearly equal tilt, close by.
-      EXPECT_LE(errors[n * 999 / 1000], std::pow(10, range[1] < 1 ? -10.0 : -11.2));
-      EXPECT_LE(errors.back(), 1e-6);
-      EXPECT_LE(translation_errors[n / 2], 1e-9);
-    }
-  }
 }
 
 TEST(FourPoint, ReturnsTheRootsOfTheClassicalDeterminant) {
@@ -142,7 +112,8 @@ TEST(FourPoint, ReturnsTheRootsOfTheClassicalDeterminant) {
         };
         int left_out = 0;
         for (double angle : expected) left_out += !has(found, angle, 1e-8);
-        // R = I for intra-camera samples of the axis solver; the three rays' centre for 3+1.
+        // R = I for intra-camera samples of the axis solver; the three rays'
+        // centre for 3+1.
         const bool identity = solver == Solver::kAxis && kind != SampleKind::kCross;
         EXPECT_EQ(left_out, kind == SampleKind::kIntra31 ? (identity ? 2 : left_out & 2)
                             : identity                   ? 1
@@ -170,12 +141,89 @@ TEST(FourPoint, DepthDeterminantIsTheClassicalOne) {
       const double tangent = -2 + 0.5 * k;
       double det3 = 0;
       for (int i = 6; i >= 0; --i) det3 = det3 * tangent + a[i];
-      // Entries of the paper's F carry a factor 1 + s² each: det4 = ±(1 + s²) det3.
+      // Entries of the paper's F carry a factor 1 + s² each: det4 = ±(1 + s²)
+      // det3.
       const double det4 =
           static_cast<double>(determinant4(s, aligned, 2 * std::atan(static_cast<long double>(tangent))));
       const double expected = det3 / std::pow(1 + tangent * tangent, 3);
       if (sign == 0) sign = det4 * expected < 0 ? -1 : 1;
       EXPECT_NEAR(det4, sign * expected, 1e-13 * size);
+    }
+  }
+}
+
+TEST(FourPoint, HalfATurnOfTheFrameIsMinusTheReciprocal) {
+  // s = tan(θ / 2) becomes -1 / s, the paper's ω̃ but for the sign: the
+  // coefficients in reverse, every other negated.
+  SampleSimulator simulator(16);
+  for (int trial = 0; trial < 200; ++trial) {
+    const SimulatedSample s = simulator.sample(kKinds[trial % 5], Motion::kRandom, 0, 60 * kDegree);
+    ZAlignedFrames aligned = frames(Solver::kVertical, s);
+    const std::array<double, 7> a = fourPointPolynomial(s.rays, aligned);
+    aligned.R_aligned_body1.topRows<2>() *= -1;
+    const std::array<double, 7> b = fourPointPolynomial(s.rays, aligned);
+    for (int k = 0; k < 7; ++k) EXPECT_NEAR(b[k], (k % 2 ? -1 : 1) * a[6 - k], 1e-14);
+  }
+}
+
+TEST(FourPoint, TranslationIsThatOfTheSingularVector) {
+  SampleSimulator simulator(17);
+  int compared = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const SampleKind kind = trial % 2 ? SampleKind::kIntra22 : SampleKind::kCross;
+    const SimulatedSample s = simulator.sample(kind, kMotions[trial % 3], kDegree, 10 * kDegree);
+    const Ray &o1 = s.rays[0].first, &o2 = s.rays[0].second;
+    const Eigen::Vector3d p1 = o1.direction.cross(o1.moment), p2 = o2.direction.cross(o2.moment);
+    for (const RelativePose& pose : solveFourPointVertical(s.rays, s.vertical)) {
+      Eigen::Matrix3d F;
+      for (int i = 0; i < 3; ++i) {
+        const Ray &a = s.rays[i + 1].first, &b = s.rays[i + 1].second;
+        const Eigen::Vector3d normal = (pose.R * a.direction).cross(b.direction);
+        F.row(i) << -normal.dot(pose.R * o1.direction), normal.dot(o2.direction),
+            normal.dot(p2 - pose.R * p1) + (pose.R * a.direction).dot(b.moment) + b.direction.dot(pose.R * a.moment);
+      }
+      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(F, Eigen::ComputeFullV);
+      const Eigen::Vector3d sigma = svd.singularValues(), null = svd.matrixV().col(2);
+      if (sigma(1) < 1e-3 * sigma(0) || std::abs(null(2)) < 1e-3) continue;
+      const Eigen::Vector3d t =
+          p2 + null(1) / null(2) * o2.direction - pose.R * (p1 + null(0) / null(2) * o1.direction);
+      EXPECT_LE((t - pose.t).norm(), 1e-8 * (1 + t.norm()));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST(FourPoint, ManySamplesAtOnceGiveWhatEachGivesAlone) {
+  SampleSimulator simulator(18);
+  SimulatedSample s = simulator.sample(SampleKind::kIntra22, Motion::kRandom, 0, 10 * kDegree);
+  const VerticalPrior vertical = s.vertical;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int count : {0, 1, 7, 8, 9, 29}) {
+    std::vector<std::array<RayCorrespondence, 4>> samples(count);
+    for (int i = 0; i < count; ++i) {
+      simulator.observe(i % 6 == 5 ? SampleKind::kOnePair : kKinds[i % 5], s);
+      samples[i] = s.rays;
+      if (i % 11 == 3) samples[i][2].first.direction.x() = nan;
+    }
+    SolverOptions options;
+    options.positive_depths_only = count % 2 == 0;
+    std::vector<PoseCandidates<6>> by_vertical(count), by_axis(count);
+    for (PoseCandidates<6>& candidates : by_vertical) candidates.count = 3;  // left from an earlier use
+    solveFourPointVertical(samples.data(), count, vertical, options, by_vertical.data());
+    solveFourPointAxis(samples.data(), count, s.axis, options, by_axis.data());
+    for (int i = 0; i < count; ++i) {
+      const auto expectSame = [](const PoseCandidates<6>& a, const PoseCandidates<6>& b) {
+        ASSERT_EQ(a.status, b.status);
+        ASSERT_EQ(a.size(), b.size());
+        for (int k = 0; k < a.size(); ++k) {
+          EXPECT_EQ(a[k].R, b[k].R);
+          EXPECT_EQ(a[k].t, b[k].t);
+          EXPECT_EQ(a[k].scale_observable, b[k].scale_observable);
+        }
+      };
+      expectSame(by_vertical[i], solveFourPointVertical(samples[i], vertical, options));
+      expectSame(by_axis[i], solveFourPointAxis(samples[i], s.axis, options));
     }
   }
 }
@@ -220,14 +268,18 @@ TEST(FourPoint, PureTranslationGivesDirectionAndNoScale) {
 
 TEST(FourPoint, ScaleIsObservableInRotationAndAcrossCameras) {
   SampleSimulator simulator(8);
-  int flagged = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const SimulatedSample s = simulator.sample(kKinds[i % 5], Motion::kRandom, kDegree, 20 * kDegree);
-    flagged += !nearest(solve(Solver::kAxis, s), s.R)->scale_observable;
-    const SimulatedSample cross = simulator.sample(SampleKind::kCross, Motion::kRandom, 0, 0);
-    flagged += !nearest(solve(Solver::kVertical, cross), cross.R)->scale_observable;
+  int flagged = 0, trials = 0;
+  for (Solver solver : {Solver::kVertical, Solver::kAxis}) {
+    for (int i = 0; i < 5000; ++i) {
+      const SimulatedSample s = simulator.sample(kKinds[i % 5], kMotions[i % 3], kDegree, 20 * kDegree);
+      const SimulatedSample cross = simulator.sample(SampleKind::kCross, kMotions[i % 3], 0, 0);
+      for (const SimulatedSample& sample : {s, cross}) {
+        flagged += !nearest(solve(solver, sample), sample.R)->scale_observable;
+        ++trials;
+      }
+    }
   }
-  EXPECT_LE(flagged, 3);
+  EXPECT_LE(flagged, trials * 0.001);
 }
 
 TEST(FourPoint, StandingStillIsIdentityWithoutScale) {

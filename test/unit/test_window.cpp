@@ -139,7 +139,7 @@ TEST(Window, StandingStaysWhereItIs) {
   options.speed_sigma = 0.1;
   const WindowRun run = runWindow(scenario, options);
   EXPECT_EQ(run.failures, 0);
-  EXPECT_LT(run.largest_position_error, 0.002);
+  EXPECT_LT(run.largest_position_error, 0.003);  // at 0.3 px of white noise, ten times that of images
   EXPECT_GT(run.states.at(ScaleState::kNotApplicable), 0.9 * run.frames);
 }
 

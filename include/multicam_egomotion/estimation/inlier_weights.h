@@ -15,7 +15,7 @@ namespace multicam_egomotion {
 /// distances of the other inliers; the density of outliers is seen in the errors between 2 and 22 times `limit` [px].
 /// No error of `limit` or more is an inlier.
 ///
-/// The others weigh 1 / (1 + p^2 / s^2) by their parallax p, with s such that this is 7/8 in the mean: outliers by
+/// The others weigh 1 / (1 + p^2 / s^2) by their parallax p, with s such that this is 3/4 in the mean: outliers by
 /// chance mostly have a parallax larger than any inlier, and with it so much influence on the translation that they
 /// would bend the pose until they fit.
 void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, double limit,

@@ -23,8 +23,8 @@ class CameraRig {
  public:
   static constexpr int kMaxCameras = 8;
 
-  /// Throws std::invalid_argument on 0 or more than 8 cameras, a T_body_cam that is not a rigid motion, or a camera
-  /// more than 100 m away from the body.
+  /// Throws std::invalid_argument on 0 or more than 8 cameras, a T_body_cam that is not a rigid motion, a camera more
+  /// than 100 m away from the body, or a time offset of more than 10 s.
   explicit CameraRig(std::vector<RigCamera> cameras);
 
   int size() const { return static_cast<int>(cameras_.size()); }

@@ -13,7 +13,7 @@ namespace multicam_egomotion {
 
 /// What ImuBuffer::add did not use, by cause.
 struct ImuFaults {
-  std::uint64_t not_finite = 0;    ///< NaN or infinite rate or acceleration
+  std::uint64_t not_finite = 0;    ///< NaN, infinite or impossibly large rate or acceleration
   std::uint64_t zero_stamp = 0;    ///< stamp zero or negative
   std::uint64_t duplicate = 0;     ///< same stamp as the latest sample
   std::uint64_t out_of_order = 0;  ///< older than the latest sample

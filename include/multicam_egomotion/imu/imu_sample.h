@@ -18,4 +18,14 @@ struct ImuSample {
   double orientation_sigma = -1.0;
 };
 
+/// Stamps beyond are no time [ns]: differences of stamps, and waits added to them, stay within 64 bits.
+constexpr std::int64_t kLatestStamp = std::int64_t{1} << 62;
+
+/// Whether the values can be a sensor's: finite, and not larger than any sensor gives.
+inline bool plausible(const ImuSample& sample) {
+  constexpr double kLargestRate = 1e3, kLargestForce = 1e5;  // [rad/s], [m/s^2]
+  return (sample.angular_velocity.array().abs() <= kLargestRate).all() &&
+         (sample.linear_acceleration.array().abs() <= kLargestForce).all();
+}
+
 }  // namespace multicam_egomotion

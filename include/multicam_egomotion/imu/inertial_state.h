@@ -39,7 +39,7 @@ struct InertialStateOptions {
   double gap_rate_sigma = 0.5;          ///< rate unseen in a gap [rad/s]
   double gap_acceleration_sigma = 3.0;  ///< acceleration unseen in a gap [m/s^2]
   /// A correction rejected this many times in a row widens the covariance and is then accepted; one of the rotation
-  /// then also widens the gyroscope's noise by what it disagrees, until it agrees again (saturation, a broken sensor).
+  /// then also widens the gyroscope's noise for some frames by what it disagrees (saturation, a broken sensor).
   int rejections_before_recovery = 3;
 };
 

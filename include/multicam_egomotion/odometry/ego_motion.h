@@ -63,6 +63,10 @@ class EgoMotion {
   /// Mask of a camera (CV_8UC1, 0 = ignore); throws std::invalid_argument when its size is not the camera's.
   void setMask(int camera, const cv::Mat& mask);
 
+  /// Takes over what may change between two frames: solver, ransac.max_epipolar_error_px, tracker.features_per_camera
+  /// and tracker.fast_threshold; the rest stays. Throws as the constructor and then changes nothing.
+  void tune(const EgoMotionOptions& options);
+
   const CameraRig& rig() const;
   const EgoMotionOptions& options() const;
   EgoMotionCounters counters() const;

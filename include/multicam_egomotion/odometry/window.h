@@ -9,6 +9,7 @@
 
 #include "multicam_egomotion/estimation/bundle_adjustment.h"
 #include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/odometry/image_noise.h"
 #include "multicam_egomotion/odometry/motion_summary.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
@@ -22,6 +23,7 @@ struct WindowOptions {
   double min_pixel_sigma = 0.1;        ///< [px]
   double max_pixel_sigma = 2.0;        ///< [px]
   double outlier_sigmas = 5.0;         ///< reprojection error from which an observation is an outlier
+  double min_distance = 0.3;           ///< what seems to be nearer is a moving object [m]
   BundleOptions bundle;
 };
 
@@ -68,7 +70,7 @@ class Window {
 
   /// Triangulated points in odom with a distance known to better than 20 % [m].
   std::vector<Eigen::Vector3d> points() const;
-  double pixelSigma() const { return pixel_sigma_; }
+  double pixelSigma() const { return noise_.pixelSigma(); }
 
  private:
   struct State {
@@ -78,12 +80,19 @@ class Window {
     bool keyframe = false;
   };
 
+  struct Landmark : BundleLandmark {
+    int frames = 0;  ///< that have seen it
+  };
+
   void addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
   void initializeLandmarks();
-  void initializeLandmark(BundleLandmark* landmark) const;
   double alignNewest(BundlePose* pose) const;
+  bool seemsAtRest() const;
+  void dropMoving(WindowEstimate* estimate);
+  bool seenInNewest(const BundleLandmark& landmark) const;
+  double errorInNewest(const BundleLandmark& landmark) const;
   void optimize(WindowEstimate* estimate);
-  void measureNoise(const BundleAdjustment& bundle, const BundleSummary& summary);
+  bool solve(WindowEstimate* estimate);
   void classify(WindowEstimate* estimate);
   bool wantsKeyframe(WindowEstimate* estimate) const;
   void dropState(int index);
@@ -91,13 +100,10 @@ class Window {
   BundleAdjustment makeBundle(std::vector<TrackId>* tracks) const;
 
   WindowOptions options_;
-  double pixel_sigma_;
-  /// Share of pixel_sigma_'s variance that counts in the motion between two frames: much of a tracked patch's error is
-  /// the same in both and cancels, and pixel_sigma_ has a floor for what calibration leaves.
-  double white_share_ = 1.0;
-  int noise_measurements_ = 0;
-  std::vector<State> states_;  ///< keyframes, oldest first; then the previous frame if it is none, then the newest
-  std::map<TrackId, BundleLandmark> landmarks_;
+  ImageNoise noise_;
+  bool newcomers_wait_ = false;  ///< tracks of few frames, none a keyframe, have no say in the pose
+  std::vector<State> states_;    ///< keyframes, oldest first; then the previous frame if it is none, then the newest
+  std::map<TrackId, Landmark> landmarks_;
   PosePrior prior_;
   /// Pose where the window started and its covariance, which stays outside: with a weak prior the small errors of
   /// linearization that marginalization leaves would move the whole window.

@@ -17,9 +17,11 @@
 #include "multicam_egomotion/ros/data_clock.h"
 #include "multicam_egomotion/ros/diagnostics.h"
 #include "multicam_egomotion/ros/input_queue.h"
+#include "multicam_egomotion/ros/live_parameters.h"
 #include "multicam_egomotion/ros/publishers.h"
 #include "multicam_egomotion/ros/rig_acquisition.h"
 #include "multicam_egomotion/ros/topic_watch.h"
+#include "multicam_egomotion/ros/transform_watch.h"
 
 namespace multicam_egomotion {
 
@@ -41,8 +43,10 @@ class EgoMotionRos {
   bool setPose(SetPose::Request& request, SetPose::Response& response);
   bool pause(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool resume(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  /// Runs in the worker and waits for it; the message says why nothing was done, empty on success.
+  /// Run in the worker and wait for it; the answer says why nothing was done, empty on success.
+  std::string inWorker(std::function<std::string()> request);
   std::string serve(std::function<void(EgoMotion&)> request);
+  std::string tune(const Parameters& wanted);
 
   void work();
   void acquireRig();
@@ -52,6 +56,7 @@ class EgoMotionRos {
   void process(const ImageInput& input);
   void publish(const std::vector<EgoMotionResult>& results);
   void report();
+  void warn();
 
   ros::CallbackQueue callbacks_;
   ros::NodeHandle node_, private_node_;
@@ -69,12 +74,15 @@ class EgoMotionRos {
   std::unique_ptr<RecentImages> recent_images_;
   std::unique_ptr<Publishers> publishers_;
   std::unique_ptr<Diagnostics> diagnostics_;
-  TopicWatch::Clock::time_point warned_;
+  TopicWatch::Clock::time_point warned_, last_frame_;
+  std::string input_fault_;  // the newest since the last report
 
   std::unique_ptr<image_transport::ImageTransport> transport_;
   std::vector<image_transport::Subscriber> image_subscribers_;
   std::vector<ros::Subscriber> subscribers_;
   std::vector<ros::ServiceServer> services_;
+  std::unique_ptr<LiveParameters> live_parameters_;
+  std::unique_ptr<TransformWatch> transform_watch_;  // where the transform is published here
   std::unique_ptr<ros::AsyncSpinner> spinner_;
   /// Images are ignored and nothing is published; the IMU carries the state on.
   std::atomic<bool> paused_{false};

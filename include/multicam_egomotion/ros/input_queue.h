@@ -31,7 +31,8 @@ using Request = std::function<void()>;
 using Input = std::variant<ImageInput, sensor_msgs::ImuConstPtr, Request>;
 
 /// What the callbacks hand to the worker, in order of arrival (contract 12). Bounded: the oldest image, or the oldest
-/// IMU sample, makes room and is counted. Requests go first. Thread-safe.
+/// IMU sample, makes room and is counted. Requests go first. Once closed, what waits and what comes is destroyed.
+/// Thread-safe.
 class InputQueue {
  public:
   InputQueue(std::size_t max_images, std::size_t max_imu) : max_images_(max_images), max_imu_(max_imu) {}

@@ -21,6 +21,8 @@ struct NodeOptions {
   std::string base_frame;            ///< the body; empty: body_frame of the rig file, base_link without one
   bool publish_tf = true;            ///< odom_frame -> base_frame
   bool publish_previous_tf = false;  ///< base_frame -> <base_frame>_previous, the frame of relative_pose
+  bool publish_features = true;      ///< picture of the features, while someone subscribes
+  bool publish_points = true;        ///< landmarks, while someone subscribes
   double path_period_s = 0.1;        ///< at least this long between two poses of the path [s]
   int path_length = 5000;            ///< most poses in the path; the oldest leave first
   bool start_paused = false;         ///< wait for ~resume

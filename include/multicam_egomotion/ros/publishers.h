@@ -22,6 +22,12 @@ class Publishers {
 
   void publish(const EgoMotionResult& result, const CameraRig& rig, const RecentImages& images);
 
+  /// Pictures for people, which may be switched while running.
+  void show(bool features, bool points) {
+    options_.publish_features = features;
+    options_.publish_points = points;
+  }
+
   bool wantsImuOdometry() const { return odometry_imu_.getNumSubscribers() > 0; }
   void publishImuOdometry(const EgoMotionResult& result) { odometry_imu_.publish(toOdometry(result, frames_)); }
 
@@ -30,7 +36,7 @@ class Publishers {
   void publishPath(const EgoMotionResult& result, const nav_msgs::Odometry& odometry);
 
   const FrameNames frames_;
-  const NodeOptions options_;
+  NodeOptions options_;
   image_transport::ImageTransport transport_;
   ros::Publisher odometry_, relative_pose_, ego_motion_, odometry_imu_, path_publisher_, points_;
   image_transport::Publisher features_;

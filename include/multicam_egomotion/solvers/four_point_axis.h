@@ -20,4 +20,9 @@ namespace multicam_egomotion {
 PoseCandidates<6> solveFourPointAxis(const std::array<RayCorrespondence, 4>& sample, const AxisPrior& prior,
                                      const SolverOptions& options = {});
 
+/// The same for `count` samples under one prior, eight at a time: less time per sample. Results are those of the
+/// function above; `candidates` has room for `count`.
+void solveFourPointAxis(const std::array<RayCorrespondence, 4>* samples, int count, const AxisPrior& prior,
+                        const SolverOptions& options, PoseCandidates<6>* candidates);
+
 }  // namespace multicam_egomotion

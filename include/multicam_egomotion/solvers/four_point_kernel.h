@@ -18,8 +18,9 @@ struct ZAlignedFrames {
 };
 
 /// The kernel of solveFourPointVertical and solveFourPointAxis: R = R_aligned_body2ᵀ Rz(2 atan s) R_aligned_body1.
-PoseCandidates<6> solveFourPointAboutZ(const std::array<RayCorrespondence, 4>& sample, const ZAlignedFrames& frames,
-                                       const SolverOptions& options);
+/// `candidates` of each of `count` samples; in blocks of eight, which take less time than one after the other.
+void solveFourPointAboutZ(const std::array<RayCorrespondence, 4>* samples, int count, const ZAlignedFrames& frames,
+                          const SolverOptions& options, PoseCandidates<6>* candidates);
 
 /// Coefficients of det F(s), constant term first (paper, equation d5), with the first correspondence as origin.
 std::array<double, 7> fourPointPolynomial(const std::array<RayCorrespondence, 4>& sample, const ZAlignedFrames& frames);

@@ -24,4 +24,9 @@ namespace multicam_egomotion {
 PoseCandidates<6> solveFourPointVertical(const std::array<RayCorrespondence, 4>& sample, const VerticalPrior& prior,
                                          const SolverOptions& options = {});
 
+/// The same for `count` samples under one prior, eight at a time: less time per sample. Results are those of the
+/// function above; `candidates` has room for `count`.
+void solveFourPointVertical(const std::array<RayCorrespondence, 4>* samples, int count, const VerticalPrior& prior,
+                            const SolverOptions& options, PoseCandidates<6>* candidates);
+
 }  // namespace multicam_egomotion

@@ -46,6 +46,10 @@ class FeatureTracker {
   /// Throws std::invalid_argument on another size or type or a camera that does not exist.
   void setMask(int camera, const cv::Mat& mask);
 
+  /// Takes features_per_camera and fast_threshold of `options` from the next frame on, ends the newest of too many
+  /// features; the other options stay. Throws as the constructor and then changes nothing.
+  void setDetection(const FeatureTrackerOptions& options);
+
   /// Tracks all features into `frames` and detects new ones where they are missing. A camera without an image loses its
   /// features. The images are copied.
   /// `T_prev_cur`: predicted motion, body at this frame in the body at the previous one; identity when unknown.

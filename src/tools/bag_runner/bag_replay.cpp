@@ -60,7 +60,8 @@ BagReplay::BagReplay(const rosbag::Bag& bag, const Parameters& parameters, const
   odometry_ = makeEgoMotion(*setup, parameters);
 }
 
-void BagReplay::play(const OnResult& on_result, RunReport* report, const OnImage& on_image) {
+void BagReplay::play(const OnResult& on_result, RunReport* report, const OnImage& on_image,
+                     const std::function<bool()>& stop) {
   odometry_->setStageObserver([report](const char* name) { report->stage(name); });
   std::vector<std::string> inputs = topics_.images;
   if (use_imu_) inputs.push_back(topics_.imu);
@@ -69,6 +70,10 @@ void BagReplay::play(const OnResult& on_result, RunReport* report, const OnImage
   DataClock clock;
   ros::Time bag_time;
   for (const rosbag::MessageInstance& message : view) {
+    if (stop && stop()) {
+      report->interrupted = true;
+      break;
+    }
     progress.advance();
     bag_time = message.getTime();
     std::int64_t now_ns = 0;

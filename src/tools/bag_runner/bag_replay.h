@@ -24,8 +24,10 @@ class BagReplay {
   using OnResult = std::function<void(const EgoMotionResult& result, const ros::Time& bag_time)>;
   using OnImage = std::function<void(int camera, std::int64_t stamp_ns)>;
 
-  /// Plays the whole bag. `on_image` (may be empty) sees every image that could be decoded, before its results.
-  void play(const OnResult& on_result, RunReport* report, const OnImage& on_image = nullptr);
+  /// Plays the bag to its end, or until `stop` (may be empty) says so: the report then says that it was interrupted.
+  /// `on_image` (may be empty) sees every image that could be decoded, before its results.
+  void play(const OnResult& on_result, RunReport* report, const OnImage& on_image = nullptr,
+            const std::function<bool()>& stop = nullptr);
 
   const RigTopics& topics() const { return topics_; }
   EgoMotion& odometry() { return *odometry_; }

@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -151,10 +153,11 @@ void RunReport::writeJson(const std::string& path, const EgoMotionCounters& coun
   for (const auto& [name, value] : parameterValues(parameters)) values.add(name, parameterJson(value));
 
   std::ofstream file(path);
-  file << "{\n  \"frames\": " << frames_ << ",\n  \"poses\": " << poses << ",\n  \"images\": " << images
-       << ",\n  \"imu_samples\": " << imu_samples << ",\n  \"coast_ticks\": " << coast_ticks_
-       << ",\n  \"keyframes\": " << keyframes_ << ",\n  \"odom_epochs\": " << odom_epoch_ + 1
-       << ",\n  \"tracks_median\": " << quantile(tracks_, 0.5) << ",\n  \"inliers_median\": " << quantile(inliers_, 0.5)
+  file << "{\n  \"interrupted\": " << (interrupted ? "true" : "false") << ",\n  \"frames\": " << frames_
+       << ",\n  \"poses\": " << poses << ",\n  \"images\": " << images << ",\n  \"imu_samples\": " << imu_samples
+       << ",\n  \"coast_ticks\": " << coast_ticks_ << ",\n  \"keyframes\": " << keyframes_
+       << ",\n  \"odom_epochs\": " << odom_epoch_ + 1 << ",\n  \"tracks_median\": " << quantile(tracks_, 0.5)
+       << ",\n  \"inliers_median\": " << quantile(inliers_, 0.5)
        << ",\n  \"wall_s\": " << std::chrono::duration<double>(Clock::now() - begin_).count()
        << ",\n  \"cpu_s\": " << cpuSeconds() << ",\n  \"peak_memory_mb\": " << peakMemoryMb()
        << ",\n  \"stages\": " << times.str() << ",\n  \"status\": " << JsonObject::counts(statuses_)
@@ -162,7 +165,7 @@ void RunReport::writeJson(const std::string& path, const EgoMotionCounters& coun
        << ",\n  \"solver\": " << JsonObject::counts(solvers_) << ",\n  \"faults\": " << faults.str()
        << ",\n  \"parameters\": " << values.str() << "\n}\n";
   file.close();
-  if (!file) throw std::runtime_error("'" + path + "' cannot be written");
+  if (!file) throw std::runtime_error("'" + path + "': not everything could be written: " + std::strerror(errno));
 }
 
 std::string RunReport::summary() const {

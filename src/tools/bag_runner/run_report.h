@@ -22,6 +22,7 @@ class RunReport {
   void addDecodeTime(double seconds) { times_ms_["decode"].push_back(1e3 * seconds); }
   void addResult(const EgoMotionResult& result);
 
+  bool interrupted = false;  ///< before the end of the bag
   std::uint64_t images = 0, imu_samples = 0, undecodable_images = 0, poses = 0;
 
   /// Throws std::runtime_error when the file cannot be written.

@@ -3,7 +3,9 @@
 #include "bag_runner/trajectory_files.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 
 namespace multicam_egomotion {
@@ -11,12 +13,17 @@ namespace {
 
 void openForWriting(const std::string& path, std::ofstream* file) {
   file->open(path);
-  if (!*file) throw std::runtime_error("'" + path + "' cannot be written");
+  if (!*file) throw std::runtime_error("'" + path + "' cannot be written: " + std::strerror(errno));
+}
+
+/// After a failure, before anything else can overwrite its reason.
+void checkWritten(const std::string& path, const std::ofstream& file) {
+  if (!file) throw std::runtime_error("'" + path + "': not everything could be written: " + std::strerror(errno));
 }
 
 void closeWritten(const std::string& path, std::ofstream* file) {
   file->close();
-  if (!*file) throw std::runtime_error("'" + path + "': not everything could be written");
+  checkWritten(path, *file);
 }
 
 }  // namespace
@@ -31,6 +38,7 @@ void TumFile::write(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body)
                 static_cast<long long>(stamp_ns / 1000000000), static_cast<long long>(stamp_ns % 1000000000), p.x(),
                 p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   file_ << line;
+  checkWritten(path_, file_);
 }
 
 void TumFile::close() { closeWritten(path_, &file_); }

@@ -32,6 +32,7 @@ const std::vector<Recipe>& recipes() {
       {"straight_line", 15.0, 20.0, straightLineMotion, stereoRig, {3.0, 3.6, 0.0, 0.10, 0.3, 1.4, 1.2, false}},
       {"stop_and_go", 22.0, 20.0, stopAndGoMotion, stereoRig, {4.0, 4.0, 0.0, 0.08, 0.3, 1.6, 1.2, false}},
       {"creep", 13.0, 20.0, creepMotion, stereoRig, {4.0, 3.6, 0.0, 0.16, 0.3, 1.2, 1.2, false}},
+      {"loop", 60.0, 20.0, loopMotion, handheldRig, {2.5, 3.6, 0.0, 0.16, 0.3, 1.2, 0.9, false}},
   };
   return all;
 }

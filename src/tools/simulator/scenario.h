@@ -37,7 +37,7 @@ struct Scenario {
   std::shared_ptr<const Scene> scene;
 };
 
-/// handheld_stereo, car_surround, drone_fisheye, straight_line, stop_and_go, creep.
+/// handheld_stereo, car_surround, drone_fisheye, straight_line, stop_and_go, creep, loop.
 const std::vector<std::string>& scenarioNames();
 
 /// Throws std::invalid_argument (name, found, expected) on an unknown name, more cameras than the rig has, or options

@@ -46,6 +46,22 @@ Trajectory handheldMotion() {
       handheldMounting());
 }
 
+Trajectory loopMotion() {
+  return Trajectory(
+      [](const TimeJet& t) {
+        const TimeJet lap = t * (1.0 / 60.0);  // frequencies are whole numbers a lap
+        MotionJet m;
+        m.x = wave(lap, 2.6, 5) + wave(lap, 0.10, 54, 0.3);
+        m.y = wave(lap, 1.8, 7, 0.2) + wave(lap, 0.08, 66);
+        m.z = 1.5 + wave(lap, 0.30, 11) + wave(lap, 0.05, 102, 0.1);
+        m.yaw = lap * (2.0 * 2.0 * M_PI) + wave(lap, 0.45, 20, 0.1) + wave(lap, 0.05, 78);
+        m.pitch = wave(lap, 0.22, 25) + wave(lap, 0.03, 90, 0.4);
+        m.roll = wave(lap, 0.28, 17, 0.3) + wave(lap, 0.04, 72, 0.2);
+        return m;
+      },
+      handheldMounting());
+}
+
 Trajectory carMotion() {
   // Half a lap turns by 180 deg, so that two halves close.
   const double quarter = 0.5 * M_PI;

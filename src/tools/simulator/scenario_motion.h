@@ -13,8 +13,9 @@ Trajectory droneMotion();         ///< from hovering, 2 m/s with banked turns
 Trajectory straightLineMotion();  ///< no rotation at all, varying speed, in motion from the start
 Trajectory stopAndGoMotion();     ///< 6 s of driving, 10 s of standing, 6 s of driving; then standing
 Trajectory creepMotion();         ///< 2 s of standing, 10 s at 2 cm/s, standing
+Trajectory loopMotion();          ///< like handheldMotion(), but the same again every 60 s
 
-/// Mounting of base_link on the moving frame of handheldMotion() (x forward, z up).
+/// Mounting of base_link on the moving frame of handheldMotion() and loopMotion() (x forward, z up).
 Eigen::Matrix3d handheldMounting();
 
 }  // namespace multicam_egomotion

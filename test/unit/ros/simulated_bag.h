@@ -12,22 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "../scaled_rig.h"
 #include "multicam_egomotion/ros/messages.h"
 #include "simulator/simulator.h"
 
 namespace multicam_egomotion {
-
-/// The rig with images of `scale` times the size in each direction, the same fields of view.
-inline CameraRig scaledRig(const CameraRig& rig, double scale) {
-  std::vector<RigCamera> cameras = rig.cameras();
-  for (RigCamera& camera : cameras) {
-    const CameraModel& model = camera.model;
-    camera.model = CameraModel(static_cast<int>(scale * model.width()), static_cast<int>(scale * model.height()),
-                               scale * model.fx(), scale * model.fy(), scale * (model.cx() + 0.5) - 0.5,
-                               scale * (model.cy() + 0.5) - 0.5, model.distortion(), model.coefficients());
-  }
-  return CameraRig(cameras);
-}
 
 /// Writes a simulation of a stereo rig (radtan) as a driver would record it: images, CameraInfo, IMU and TF.
 class SimulatedBag {

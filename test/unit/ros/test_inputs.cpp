@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/image_encodings.h>
 
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+#include <thread>
 
 #include "multicam_egomotion/ros/data_clock.h"
 #include "multicam_egomotion/ros/image_conversion.h"
 #include "multicam_egomotion/ros/input_queue.h"
+#include "multicam_egomotion/ros/topic_watch.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -39,9 +42,32 @@ TEST(InputQueue, KeepsOrderDropsOldestImagesAndServesRequestsFirst) {
     ASSERT_TRUE(input && std::holds_alternative<sensor_msgs::ImuConstPtr>(*input));
   }
   EXPECT_FALSE(queue.pop(kNoWait));
-  queue.push(ImageInput{});
+}
+
+TEST(InputQueue, OnceClosedNobodyWaitsForWhatItHeld) {
+  InputQueue queue(2, 2);
+  const auto answer = std::make_shared<int>(0);
+  for (int i = 0; i < 2; ++i) queue.push(ImageInput{});
+  queue.post([answer] {});
+  EXPECT_EQ(answer.use_count(), 2);
   queue.close();
+  EXPECT_EQ(answer.use_count(), 1);
+  queue.post([answer] {});
+  for (int i = 0; i < 5; ++i) queue.push(ImageInput{});
+  EXPECT_EQ(answer.use_count(), 1);
   EXPECT_FALSE(queue.pop(kNoWait));
+}
+
+TEST(TopicWatch, NamesSilentTopicsAndMissingPublishers) {
+  TopicWatch watch;
+  watch.add("/imu", [] { return 1u; });
+  watch.add("/cam0/image_raw", [] { return 0u; });
+  EXPECT_TRUE(watch.silent().empty());
+  watch.note(0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  EXPECT_EQ(watch.silent(), (std::vector<std::string>{"/imu (2 s)", "/cam0/image_raw (never, no publisher)"}));
+  watch.note(1);
+  EXPECT_EQ(watch.silent(), (std::vector<std::string>{"/imu (2 s)"}));
 }
 
 TEST(DataClock, FollowsTheNewestStampAndJumpsThatAreConfirmed) {
@@ -78,6 +104,11 @@ TEST(ImageConversion, FaultsAreNamed) {
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
   image = gradient();
   image.step = 3;
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  image = gradient();
+  image.encoding = "mono16";
+  image.width = 2;
+  image.step = 5;
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
   image = gradient();
   image.encoding = "holographic";

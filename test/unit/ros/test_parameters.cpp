@@ -78,5 +78,11 @@ TEST(Parameters, FilesMayBePartialAndAreTypedAsByRoslaunch) {
   EXPECT_THROW(readParameterFile("/does/not/exist.yaml"), std::invalid_argument);
 }
 
+TEST(Parameters, AliasesWithoutEndAreRefused) {
+  const std::string path = ::testing::TempDir() + "aliases.yaml";
+  std::ofstream(path) << "a: &a {b: *a}\n";
+  EXPECT_THROW(readParameterFile(path), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace multicam_egomotion
