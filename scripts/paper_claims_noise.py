@@ -42,23 +42,22 @@ def _span(ratios):
 def _similar(one, other, errors=ERRORS):
     def test(variant):
         ratios = variant.ratios(one, other, errors=errors)
-        return all(abs(ratio - 1.0) <= SIMILAR for ratio in ratios), f"{one} / {other}: {_span(ratios)}"
+        return all(abs(ratio - 1.0) <= SIMILAR for ratio in ratios), f"{one}: {_span(ratios)} of {other}"
     return test
 
 
 def _better(ones, others, motions=MOTIONS, errors=ERRORS, share=1.0):
     """All of `ones` better than all of `others`, in this share of the motions and errors at least."""
     def test(variant):
-        ratios = {(one, other): variant.ratios(one, other, motions, errors) for one in ones for other in others}
-        all_ratios = [ratio for values in ratios.values() for ratio in values]
-        better = np.mean([ratio < 1.0 for ratio in all_ratios])
-        return better >= share, "; ".join(f"{one} / {other}: {_span(values)}" for (one, other), values in ratios.items())
+        ratios = {other: [ratio for one in ones for ratio in variant.ratios(one, other, motions, errors)]
+                  for other in others}
+        better = np.mean([ratio < 1.0 for values in ratios.values() for ratio in values])
+        return better >= share, f"{' and '.join(ones)}: " + ", ".join(f"{_span(values)} of {other}"
+                                                                      for other, values in ratios.items())
     return test
 
 
 def _more_robust_but_sideways(variant):
-    if not any(solver == FIVE for solver, _ in variant._figure.curves()):
-        return None, ""
     four = [solver for solver, _ in variant._figure.curves() if solver != FIVE]
     better = {motion: np.mean([ratio < 1.0 for solver in four for ratio in variant.ratios(solver, FIVE, [motion])])
               for motion in MOTIONS}
@@ -108,9 +107,7 @@ def _judge_figure(section, figure, axis_noises, claims):
     for text, test in claims:
         outcomes = [(variant.name,) + test(variant) for variant in variants]
         holding = [name for name, holds, _ in outcomes if holds]
-        if outcomes[0][1] is None:
-            verdict = "no data"
-        elif len(holding) == len(outcomes):
+        if len(holding) == len(outcomes):
             verdict = "holds"
         elif holding:
             verdict = "does not hold, but with " + " and with ".join(holding)

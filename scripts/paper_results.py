@@ -66,9 +66,6 @@ class KittiTable:
             self._rows[place + (row["method"],)] = row
         self.places.sort()
 
-    def methods(self, place):
-        return [method for sequence, source, method in self._rows if (sequence, source) == place]
-
     def value(self, place, method, column="median_deg"):
         """NaN where there is no data."""
         row = self._rows.get(place + (method,))
@@ -77,3 +74,13 @@ class KittiTable:
     def measured_sequences(self):
         """Places of the eleven sequences that have data."""
         return [place for place in self.places if len(place[0]) == 2 and place[1] != "no data"]
+
+
+def trajectory_errors(directory):
+    """RMS of the absolute trajectory error [m] by place and method."""
+    squares = {}
+    for row in read_rows(directory / "fig7_trajectory.csv"):
+        methods = squares.setdefault((row["sequence"], row["source"]), {})
+        methods.setdefault(row["method"], []).append(float(row["error_m"]) ** 2)
+    return {place: {method: math.sqrt(sum(values) / len(values)) for method, values in methods.items()}
+            for place, methods in squares.items()}
