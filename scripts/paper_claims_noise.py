@@ -110,7 +110,7 @@ def _judge_figure(section, figure, axis_noises, claims):
         if len(holding) == len(outcomes):
             verdict = "holds"
         elif holding:
-            verdict = "does not hold, but with " + " and with ".join(holding)
+            verdict = "holds only with " + " and with ".join(holding)
         else:
             verdict = "does not hold"
         # Ways that give the same numbers are told once.

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdio>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
 #include <string>
 
 namespace multicam_egomotion {
@@ -10,28 +12,26 @@ namespace multicam_egomotion {
 /// A table of comma-separated values with a header row. Values that are not finite are written as "no data".
 class CsvFile {
  public:
-  /// Throws std::runtime_error when the file cannot be written.
-  CsvFile(const std::string& path, const std::string& header);
-  ~CsvFile();
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
+  /// Throws std::runtime_error when the file cannot be written; so does row().
+  CsvFile(const std::string& path, const std::string& header) : path_(path), file_(path) { row(header); }
 
-  template <class... Values>
-  void row(const Values&... values) {
-    std::string line;
-    ((line += (line.empty() ? "" : ",") + text(values)), ...);
-    write(line);
+  template <class First, class... Others>
+  void row(const First& first, const Others&... others) {
+    write(first);
+    ((file_ << ',', write(others)), ...);
+    file_ << std::endl;
+    if (!file_) throw std::runtime_error(path_ + ": cannot be written");
   }
 
  private:
-  static std::string text(double value);
-  static std::string text(int value) { return std::to_string(value); }
-  static std::string text(std::size_t value) { return std::to_string(value); }
-  static std::string text(const std::string& value) { return value; }
-  void write(const std::string& line);
+  template <class Value>
+  void write(const Value& value) {
+    file_ << value;
+  }
+  void write(double value) { std::isfinite(value) ? file_ << value : file_ << "no data"; }
 
   std::string path_;
-  std::FILE* file_;
+  std::ofstream file_;
 };
 
 }  // namespace multicam_egomotion

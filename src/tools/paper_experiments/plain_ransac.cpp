@@ -13,37 +13,12 @@ namespace {
 
 constexpr double kInlierThreshold = 1.0;  // Sampson error [px]
 
-double pixelsPerRadian(const FeatureObservation& feature) { return feature.to_pixel.norm() / std::sqrt(2.0); }
-
 double samplesNeeded(double inlier_share, int sample_size, double success_probability) {
   const double all_inliers = std::pow(inlier_share, sample_size);
   return all_inliers >= 1.0 ? 1.0 : std::log1p(-success_probability) / std::log1p(-all_inliers);
 }
 
 }  // namespace
-
-CorrespondenceSet matchFrames(const TrackedFrame& first, const TrackedFrame& second,
-                              const std::vector<Eigen::Isometry3d>& T_body_cam) {
-  std::vector<CorrespondenceSet::Entry> entries;
-  std::size_t begin = 0;
-  for (const FeatureObservation& now : second.observations) {
-    while (begin < first.observations.size() && first.observations[begin].track < now.track) ++begin;
-    for (std::size_t i = begin; i < first.observations.size() && first.observations[i].track == now.track; ++i) {
-      const FeatureObservation& then = first.observations[i];
-      const Eigen::Isometry3d& T1 = T_body_cam[then.camera];
-      const Eigen::Isometry3d& T2 = T_body_cam[now.camera];
-      CorrespondenceSet::Entry entry;
-      entry.rays = {makeRay(T1.linear() * then.bearing, T1.translation()),
-                    makeRay(T2.linear() * now.bearing, T2.translation()), then.camera, now.camera};
-      entry.pixels_per_radian1 = pixelsPerRadian(then);
-      entry.pixels_per_radian2 = pixelsPerRadian(now);
-      entries.push_back(entry);
-    }
-  }
-  std::vector<Eigen::Vector3d> centers;
-  for (const Eigen::Isometry3d& T : T_body_cam) centers.push_back(T.translation());
-  return CorrespondenceSet(entries, centers, centers);
-}
 
 PairEstimate plainRansac(const CorrespondenceSet& set, const PaperSolver& solver, const SolverPriors& priors,
                          std::uint64_t seed) {

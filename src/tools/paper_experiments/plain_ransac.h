@@ -4,10 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <vector>
 
 #include "multicam_egomotion/estimation/correspondence_set.h"
-#include "multicam_egomotion/tracking/tracked_frame.h"
 #include "paper_experiments/paper_solver.h"
 
 namespace multicam_egomotion {
@@ -18,10 +16,6 @@ struct PairEstimate {
   State state = State::kFailed;
   Eigen::Isometry3d T_f2_f1 = Eigen::Isometry3d::Identity();
 };
-
-/// All pairs of views, of one or two cameras, of the tracks that both frames have.
-CorrespondenceSet matchFrames(const TrackedFrame& first, const TrackedFrame& second,
-                              const std::vector<Eigen::Isometry3d>& T_body_cam);
 
 /// RANSAC as in the paper: uniform samples; of all their solutions that have their points in front of the cameras, the
 /// first with the most inliers, as it is. Ends as the robust estimator does by default.
