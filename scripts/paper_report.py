@@ -66,15 +66,16 @@ def _pair_counts(directory):
     for place in table.places:
         if place[1] == "no data":
             continue
-        counts = {key: int(table.value(place, "4pt-axis", key)) for key in ("pairs", "failed", "undefined_prior")}
+        counts = [int(table.value(place, method, key)) for method, key in (
+            ("4pt-axis", "pairs"), ("4pt-axis", "failed"), ("ours", "failed"), ("4pt-axis", "undefined_prior"))]
         moving = [_cell(table.value(place, method, "median_moving_deg")) for method in ("4pt-axis",) + OURS]
-        rows.append([place[0], place[1], *map(str, counts.values()), *moving])
+        rows.append([place[0], place[1], *map(str, counts), *moving])
     if not rows:
         return []
-    return ["", "Pairs of frames; those that 4pt-axis did not solve (they count as 180 degrees); those without a "
-            "rotation axis (they do not count). Then the median direction error of the pairs with more than 0.1 m "
-            "between them: the direction of a standing car is noise.", ""] + _table(
-        ["sequence", "", "pairs", "failed", "axis undefined", "4pt-axis", *OURS], rows)
+    return ["", "Pairs of frames; those that 4pt-axis did not solve (they count as 180 degrees); those that ours did not "
+            "(its prediction counts); those without a rotation axis (they do not count). Then the median direction error "
+            "of the pairs with more than 0.1 m between them: the direction of a standing car is noise.", ""] + _table(
+        ["sequence", "", "pairs", "4pt-axis failed", "ours failed", "axis undefined", "4pt-axis", *OURS], rows)
 
 
 def markdown(directory, figures, claims):

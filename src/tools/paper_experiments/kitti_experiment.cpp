@@ -16,7 +16,7 @@ constexpr double kMoving = 0.1;  // displacement of which the ground truth knows
 using State = PairEstimate::State;
 
 PoseErrors errorsOf(const PairEstimate& estimate, const Eigen::Isometry3d& truth) {
-  if (estimate.state != State::kSolved) return {};
+  if (estimate.state == State::kFailed) return {};
   return poseErrors(estimate.T_f2_f1.linear(), estimate.T_f2_f1.translation(), truth.linear(), truth.translation());
 }
 
@@ -76,7 +76,8 @@ class KittiTables {
     }
     const KittiFolder& folder = sequence.folder;
     const std::size_t pairs = run.estimates.front().size();
-    const int failed = countOf(run, State::kFailed), undefined = countOf(run, State::kUndefined);
+    const int failed = countOf(run, State::kFailed) + countOf(run, State::kPredicted);
+    const int undefined = countOf(run, State::kUndefined);
     rotation_.row(folder.sequence, folder.source, run.method, pairs, failed, undefined, median(rotation),
                   spread(rotation));
     translation_.row(folder.sequence, folder.source, run.method, pairs, failed, undefined, median(translation),

@@ -49,7 +49,7 @@ std::vector<PairEstimate> runOurs(const KittiSequence& sequence, bool vertical, 
     const TrackOdometry::Step step = odometry.add(sequence.frames[i], predicted);
     if (i == 0) continue;
     estimates.push_back(
-        {step.ok ? PairEstimate::State::kSolved : PairEstimate::State::kFailed, step.T_previous_body.inverse()});
+        {step.ok ? PairEstimate::State::kSolved : PairEstimate::State::kPredicted, step.T_previous_body.inverse()});
   }
   return estimates;
 }

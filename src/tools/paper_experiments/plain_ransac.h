@@ -12,7 +12,12 @@ namespace multicam_egomotion {
 
 /// What the paper's tables rate of a pair of frames.
 struct PairEstimate {
-  enum class State { kSolved, kFailed, kUndefined };  ///< undefined: the prior says nothing, as there is no rotation
+  enum class State {
+    kSolved,
+    kPredicted,  ///< not from this pair's images: what the motion before lets expect
+    kFailed,     ///< nothing
+    kUndefined,  ///< the prior says nothing, as there is no rotation
+  };
   State state = State::kFailed;
   Eigen::Isometry3d T_f2_f1 = Eigen::Isometry3d::Identity();
 };
