@@ -4,8 +4,6 @@ find_package(GTest REQUIRED)
 find_package(benchmark QUIET)
 include(GoogleTest)
 
-set(MULTICAM_EGOMOTION_CORE_BUILD "" CACHE PATH "Take the core's tests from this build without ROS, do not build them")
-
 if(NOT TARGET tests)
   add_custom_target(tests)
 endif()
@@ -49,13 +47,19 @@ endfunction()
 if(MULTICAM_EGOMOTION_ROS)
   add_consumer_test(consumer_catkin -Dmulticam_egomotion_DIR=${CATKIN_DEVEL_PREFIX}/share/multicam_egomotion/cmake)
 
+  if(MULTICAM_EGOMOTION_CORE_BUILD)
+    set(paper_experiments ${MULTICAM_EGOMOTION_CORE_BUILD}/paper_experiments)
+  else()
+    set(paper_experiments $<TARGET_FILE:paper_experiments>)
+  endif()
   # The Python tools read and write bags. unittest says "OK (skipped=...)" only where nothing failed.
   file(GLOB script_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_scripts_*.py)
   foreach(file ${script_tests})
     get_filename_component(name ${file} NAME_WE)
     add_test(NAME ${name} COMMAND ${PYTHON_EXECUTABLE} -m unittest -v ${name}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
-    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 600)
+    set_tests_properties(${name} PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped=" TIMEOUT 600
+      ENVIRONMENT PAPER_EXPERIMENTS=${paper_experiments})
   endforeach()
 endif()
 
