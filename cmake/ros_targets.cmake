@@ -1,6 +1,4 @@
 # The ROS library, nodelet, node and bag tools, and everything that is installed for them.
-find_package(Boost REQUIRED COMPONENTS program_options)
-
 layer_sources(ros_sources ros)
 add_library(multicam_egomotion_ros ${ros_sources})
 add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})

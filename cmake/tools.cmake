@@ -1,6 +1,4 @@
 # Executables that need no ROS.
-find_package(Boost REQUIRED COMPONENTS program_options)
-
 layer_sources(paper_experiments_sources tools/paper_experiments)
 add_executable(paper_experiments src/tools/paper_experiments.cpp ${paper_experiments_sources})
 target_link_libraries(paper_experiments multicam_egomotion_simulator boost_program_options)

@@ -19,8 +19,9 @@ struct PosedFrame {
 /// What two frames see of the same tracks.
 struct TrackMatches {
   CorrespondenceSet set;
-  std::vector<TrackId> tracks;      ///< by correspondence, sorted
-  std::vector<double> parallax_px;  ///< by correspondence: image motion with R_f2_f1 taken out; negative between cameras
+  std::vector<TrackId> tracks;  ///< by correspondence, sorted
+  std::vector<double>
+      parallax_px;  ///< by correspondence: image motion with R_f2_f1 taken out; negative between cameras
 };
 
 /// All pairs of views, of one camera or of two, of each track that both frames see.
