@@ -34,8 +34,8 @@ else
     librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev libtf2-dev libtf2-eigen-dev libtf2-msgs-dev
     libtf2-ros-dev pluginlib-dev python3-diagnostic-msgs python3-dynamic-reconfigure python3-genpy python3-geometry-msgs
     python3-nav-msgs python3-rosbag python3-roslaunch python3-rosnode python3-rosparam python3-rospy python3-rosservice
-    python3-rostest python3-sensor-msgs python3-std-srvs ros-geometry-msgs ros-message-generation ros-message-runtime
-    ros-std-msgs rosbash rospack-tools topic-tools
+    python3-rostest python3-sensor-msgs python3-std-srvs python3-tf2-msgs ros-geometry-msgs ros-message-generation
+    ros-message-runtime ros-std-msgs rosbash rospack-tools topic-tools
   )
 fi
 
