@@ -1,5 +1,7 @@
 # The ROS library, nodelet, node and bag tools, and everything that is installed for them.
 layer_sources(ros_sources ros)
+# The message that it includes has the name of a class that the others use.
+set_source_files_properties(src/ros/ego_motion_message.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 add_library(multicam_egomotion_ros ${ros_sources})
 add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})

@@ -41,7 +41,7 @@ function(add_consumer_test name)
   add_test(NAME ${name}
     COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/test/consumer ${directory}
       --build-generator ${CMAKE_GENERATOR} --build-noclean --build-options -DCMAKE_BUILD_TYPE=Release
-      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} ${ARGN}
+      -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} ${ARGN}
       --test-command ${directory}/consumer)
   set_tests_properties(${name} PROPERTIES TIMEOUT 300)
 endfunction()

@@ -9,7 +9,7 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
 packages=(
   # build
-  g++ make cmake ccache libboost-program-options-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
+  g++ ninja-build cmake ccache libboost-program-options-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
   pybind11-dev python3-dev
   # scripts
   python3 python3-matplotlib python3-numpy python3-pil python3-yaml

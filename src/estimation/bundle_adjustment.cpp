@@ -14,7 +14,7 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Points stay in front: beyond infinity a reversed translation would explain the images as well [1/m].
-constexpr double kFarthest = 1e-4;
+constexpr double kSmallestInverseDistance = 1e-4;
 
 // Two unit vectors that complete `direction` to an orthogonal frame.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
@@ -278,7 +278,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
       }
       const Eigen::Vector3d d = block.H_inverse * rhs;
       landmark.direction = (landmark.direction + tangentBasis(landmark.direction) * d.head<2>()).normalized();
-      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kFarthest);
+      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kSmallestInverseDistance);
     }
     const double new_cost = cost(options);
     const double decrease = summary.cost - new_cost;

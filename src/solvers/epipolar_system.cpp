@@ -8,6 +8,9 @@
 #include <limits>
 #include <utility>
 
+#include "four_point_translation.h"
+#include "sample_checks.h"
+
 namespace multicam_egomotion {
 namespace {
 
@@ -15,17 +18,12 @@ struct Lines {
   LaneVectors x, q;  // directions, moments
 };
 
-constexpr double kNoParallax = 1e-7;    // [rad]
 constexpr double kVanishing = 1e-14;    // determinant of rows of order 1
 constexpr double kSameTilt = 1e-12;     // [rad]
 constexpr double kMeeting = 1e-13;      // constraint of two rays through one point, relative to their moments
 constexpr double kSmallestNorm = 1e-6;  // of a ray's direction
 constexpr double kLargestNorm = 1e100;
 constexpr double kLargestMoment = 1e100;  // [m]
-
-bool samePair(const RayCorrespondence& a, const RayCorrespondence& b) {
-  return a.camera1 == b.camera1 && a.camera2 == b.camera2;
-}
 
 // The correspondence that is not of the camera pair of the three others; -1: there is none.
 int oddOne(const std::array<RayCorrespondence, 4>& sample) {
@@ -105,18 +103,6 @@ Eigen::Matrix3d normalCofactors(const Eigen::Matrix4d& rows) {
 }
 
 }  // namespace
-
-bool isRotation(const Eigen::Matrix3d& R) {
-  return std::abs(R.squaredNorm() - 3.0) < 1e-6 && std::abs(R.determinant() - 1.0) < 1e-6;
-}
-
-bool centersCover(const std::array<RayCorrespondence, 4>& sample, const SolverOptions& options) {
-  if (options.camera_centers == nullptr) return true;
-  return std::all_of(sample.begin(), sample.end(), [&](const RayCorrespondence& ray) {
-    return ray.camera1 >= 0 && ray.camera1 < options.camera_count && ray.camera2 >= 0 &&
-           ray.camera2 < options.camera_count;
-  });
-}
 
 bool onePair(const std::array<RayCorrespondence, 4>& sample) {
   return samePair(sample[0], sample[1]) && samePair(sample[0], sample[2]) && samePair(sample[0], sample[3]);

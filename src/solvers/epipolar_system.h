@@ -39,11 +39,6 @@ struct EpipolarSystem {
   LaneVectors p1, p2;  ///< points of the rays from which depths count [m]
 };
 
-bool isRotation(const Eigen::Matrix3d& R);
-
-/// The cameras of the sample have centres, where centres are given.
-bool centersCover(const std::array<RayCorrespondence, 4>& sample, const SolverOptions& options);
-
 bool onePair(const std::array<RayCorrespondence, 4>& sample);
 
 /// The vertical of frame 1 in the aligned frame 2 is z to rounding: the frames differ in yaw alone, which is free.

@@ -10,6 +10,7 @@
 #include "epipolar_system.h"
 #include "instruction_sets.h"
 #include "quartic_roots.h"
+#include "sample_checks.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
