@@ -15,6 +15,7 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr double kMinInitializationS = 0.1;
+constexpr double kMinStillS = 0.3;  // quiet for less may as well be a smooth curve
 constexpr double kMaxStepS = 0.02;
 constexpr int kMaxSteps = 500;
 
@@ -99,7 +100,7 @@ void InertialState::forgetBiases() {
   }
 }
 
-bool InertialState::initialize(const std::vector<ImuSample>& samples) {
+bool InertialState::initialize(const std::vector<ImuSample>& samples, const Eigen::Vector3d* up) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!usable(samples[i]) || (i > 0 && samples[i].stamp_ns <= samples[i - 1].stamp_ns)) {
       ++ignored_samples_;
@@ -117,7 +118,8 @@ bool InertialState::initialize(const std::vector<ImuSample>& samples) {
   covariance_.block<3, 3>(kVelocity, kVelocity) = velocity_variance * Eigen::Matrix3d::Identity();
   covariance_(kTheta, kTheta) = covariance_(kTheta + 1, kTheta + 1) = 1.0;  // no idea before the accelerometer is asked
 
-  started_still_ = spreadOf(samples, &ImuSample::angular_velocity).maxCoeff() < options_.still_rate_spread &&
+  started_still_ = secondsBetween(samples.front(), samples.back()) > kMinStillS &&
+                   spreadOf(samples, &ImuSample::angular_velocity).maxCoeff() < options_.still_rate_spread &&
                    spreadOf(samples, &ImuSample::linear_acceleration).maxCoeff() < options_.still_acceleration_spread;
   if (started_still_) {
     Eigen::Vector3d mean_rate = Eigen::Vector3d::Zero();
@@ -144,13 +146,16 @@ bool InertialState::initialize(const std::vector<ImuSample>& samples) {
   if (window.sum.norm() < 1e-3 * window.duration_s) {  // free fall shows no vertical
     return false;
   }
+  const double acceleration_sigma = accelerationSigma(window, started_still_);
+  if (up) {
+    window.sum = window.sum.norm() * *up;
+  }
   R_odom_imu_ = levelAttitude(R_body_imu_ * window.sum) * R_body_imu_;
   window.sum = R_odom_imu_ * window.sum;
   window.rotation_sum = R_odom_imu_ * window.rotation_sum;
   v_odom_.setZero();
   last_ = samples.back();
-  correctVertical(window, accelerationSigma(window, started_still_ ? options_.still_acceleration_sigma
-                                                                   : options_.motion_acceleration_sigma));
+  correctVertical(window, acceleration_sigma);
   window_ = ForceWindow();
   held_ = false;
   rate_seen_ns_ = velocity_seen_ns_ = 0;

@@ -342,7 +342,8 @@ class EgoMotion::Impl {
   void followVertical(const Eigen::Vector3d& window_position, double dt) {
     settled_ =
         settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
-    Eigen::Matrix3d turn = tiltCorrection(published_.pose().linear(), motion_->up(), motion_->tiltSigma());
+    Eigen::Matrix3d turn =
+        tiltCorrection(published_.pose().linear(), motion_->up(), settled_ ? motion_->tiltSigma() : 0.0);
     if (settled_) turn = slowed(turn, options_.max_tilt_correction_rate, dt);
     published_.turn(turn);
     window_.rotateAbout(window_position, turn);

@@ -19,6 +19,11 @@ constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
 constexpr double kDisplacementModelShare = 0.005;  // of the distance
 constexpr double kRefusedMemory = 20.0;            // frames over which the share of the refused ones is taken
+// The start is made again where its vertical proves to have been this far off, and is known so many times better by
+// then that what the force told of it hardly counts: what has been seen is used once.
+constexpr double kTiltedStart = 0.05;  // [rad]
+constexpr double kBetterKnown = 3.0;
+constexpr std::int64_t kLatestNewStart = 2000000000;  // after the start, within the samples kept [ns]
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
@@ -42,7 +47,14 @@ void InertialMotion::takeTiltFromMessage() {
 bool InertialMotion::initialize(std::int64_t stamp_ns) {
   std::vector<ImuSample> samples;
   buffer_->samplesBetween(stamp_ns - static_cast<std::int64_t>(kInitializationSpan * 1e9), stamp_ns, &samples);
+  const InertialState before = state_;
   if (!state_.initialize(samples)) return false;
+  start_ = Start{before,
+                 std::move(samples),
+                 {},
+                 Eigen::Matrix3d::Identity(),
+                 state_.attitude().row(2).transpose(),
+                 state_.tiltSigma()};
   startFromHere();
   propagateTo(stamp_ns);
   markFrame();
@@ -52,6 +64,7 @@ bool InertialMotion::initialize(std::int64_t stamp_ns) {
 
 void InertialMotion::startFromHere() {
   complete_ = state_;
+  complete_start_ = start_;
   bridged_.clear();
   newest_ = Frame();
   samples_were_short_ = false;
@@ -68,11 +81,15 @@ void InertialMotion::advanceTo(std::int64_t stamp_ns) {
 }
 
 void InertialMotion::markFrame() {
+  if (start_) start_->R_start_frame *= state_.rotationSinceFrame();
   state_.markFrame();
   newest_.stamp_ns = state_.stamp();
+  if (start_) start_->frames.push_back(newest_);
   if (samples_were_short_) bridged_.push_back(newest_);
   newest_ = Frame();
-  if (!samples_were_short_ || state_.stamp() - bridged_.front().stamp_ns > kLatestSamples) startFromHere();
+  const bool too_late = samples_were_short_ && state_.stamp() - bridged_.front().stamp_ns > kLatestSamples;
+  if (start_ && (too_late || state_.stamp() - start_->samples.back().stamp_ns > kLatestNewStart)) start_.reset();
+  if (too_late || !samples_were_short_) startFromHere();
 }
 
 // Does the bridged frames again once samples have come that reach the first of them.
@@ -83,6 +100,7 @@ void InertialMotion::catchUp() {
   }
   const std::vector<Frame> frames = std::move(bridged_);
   state_ = complete_;
+  start_ = complete_start_;
   startFromHere();
   for (const Frame& frame : frames) {
     propagateTo(frame.stamp_ns);
@@ -110,6 +128,11 @@ MotionSummary InertialMotion::motionSinceFrame() const {
 void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   newest_.vision = vision;
   newest_.scale_seen = scale_seen;
+  learn(vision, scale_seen);
+  startAnew();
+}
+
+void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Isometry3d T_imu1_imu2 = imuRelativePose(calibration_.T_body_imu, vision.T_a_b);
   const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
   // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
@@ -126,6 +149,33 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
   const bool accepted = state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
   refused_share_ += ((accepted ? 0.0 : 1.0) - refused_share_) / kRefusedMemory;
+}
+
+// The filter is linear in small angles only: what a wrong vertical at the start makes of gravity stays in the biases.
+void InertialMotion::startAnew() {
+  if (!start_ || samples_were_short_) return;
+  const Eigen::Vector3d up = start_->R_start_frame * state_.rotationSinceFrame() * state_.attitude().row(2).transpose();
+  if (shortestArc(start_->up, up).norm() < kTiltedStart || kBetterKnown * state_.tiltSigma() > start_->tilt_sigma) {
+    return;
+  }
+  const std::int64_t now_ns = state_.stamp();
+  const Frame newest = newest_;
+  const double refused_share = refused_share_;
+  state_ = start_->before;
+  state_.initialize(start_->samples, &up);
+  start_->up = up;
+  start_->R_start_frame.setIdentity();
+  for (const Frame& frame : start_->frames) {
+    propagateTo(frame.stamp_ns);
+    if (frame.vision) learn(*frame.vision, frame.scale_seen);
+    start_->R_start_frame *= state_.rotationSinceFrame();
+    state_.markFrame();
+  }
+  startFromHere();
+  propagateTo(now_ns);
+  newest_ = newest;
+  learn(*newest.vision, newest.scale_seen);
+  refused_share_ = refused_share;
 }
 
 Eigen::Vector3d InertialMotion::up() const {
@@ -153,6 +203,7 @@ TwistWithCovariance InertialMotion::twist() const {
 
 void InertialMotion::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
   state_.restartAt(stamp_ns, attitude_sigma);
+  start_.reset();
   startFromHere();
   initialized_ = state_.initialized();
 }

@@ -158,6 +158,24 @@ TEST(InertialState, StartsInMotionWithAWideTilt) {
   EXPECT_LT(tiltError(state, motion.attitude(0)).norm(), 3 * state.tiltSigma());
 }
 
+TEST(InertialState, DoesNotTakeASmoothCurveForRest) {
+  // A car that turns steadily: as quiet as at rest, and the force is 17 deg off the vertical.
+  std::vector<ImuSample> samples;
+  for (int i = 0; i <= 24; ++i) {
+    ImuSample sample;
+    sample.stamp_ns = 1000000000 + 5000000 * i;
+    sample.angular_velocity << 0.0, 0.0, 0.3;
+    sample.linear_acceleration << 0.0, 3.0, 9.81;
+    samples.push_back(sample);
+  }
+  InertialState state{ImuCalibration()};
+  ASSERT_TRUE(state.initialize(samples));
+  EXPECT_FALSE(state.startedStill());
+  const double error = std::acos(state.attitude()(2, 2));
+  EXPECT_GT(error, 16.0 * kDegree);
+  EXPECT_LT(error, 1.5 * state.tiltSigma());
+}
+
 TEST(InertialState, PutsOdomXAlongTheBody) {
   ImuCalibration calibration;
   calibration.T_body_imu.linear() = expSO3(Eigen::Vector3d(1.0, -2.0, 0.5));

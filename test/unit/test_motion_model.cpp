@@ -6,6 +6,7 @@
 
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_buffer.h"
+#include "multicam_egomotion/odometry/learned_motion.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 #include "simulator/simulator.h"
 
@@ -130,6 +131,24 @@ TEST(ConstantRateMotion, ResetAndRestart) {
   model.reset(false);
   EXPECT_FALSE(model.initialized());
   EXPECT_EQ(model.up(), Eigen::Vector3d::UnitZ());
+}
+
+TEST(LearnedMotion, APoorlyKnownScaleLeavesTheLengthOpen) {
+  WindowEstimate estimate;
+  estimate.vision = seen(motion({0.0, 0.5, 0.0}, Eigen::Vector3d::Zero()), 1e-3, 1e-4);
+  estimate.scale_state = ScaleState::kObservable;
+  const auto sigma = [&](double scale_sigma, int axis) {
+    estimate.scale_sigma = scale_sigma;
+    const LearnedMotion learned = learnedMotion(estimate, Eigen::Vector3d::Zero(), true, 5.0, 400.0);
+    EXPECT_TRUE(learned.use_displacement);
+    EXPECT_EQ(learned.vision.T_a_b.translation().y(), 0.5);
+    return std::sqrt(learned.vision.covariance(axis, axis));
+  };
+  // As well known along the motion as across: noise, another in each frame.
+  EXPECT_NEAR(sigma(0.002, 1), 1e-3, 1e-9);
+  // The scale is worse: the error lasts.
+  EXPECT_GT(sigma(0.05, 1), 5.0 * 0.05 * 0.5);
+  EXPECT_NEAR(sigma(0.05, 0), 1e-3, 1e-9);
 }
 
 // The inertial model over a simulated run, with what vision would say.
@@ -269,6 +288,37 @@ TEST(InertialMotion, RestartGoesOnAtAnotherTime) {
   EXPECT_LT((run.model_->up() - up).norm(), 1e-9);
   EXPECT_EQ(run.model_->gyroscopeBias(), bias);
   EXPECT_GT(run.model_->tiltSigma(), 0.16);
+}
+
+TEST(InertialMotion, AStartInACurveFindsTheVertical) {
+  // A car at 6 m/s in a circle of 12 m: the force is 17 deg off the vertical.
+  constexpr double kRate = 0.5, kSpeed = 6.0;
+  const auto pose = [](int frame) {
+    const double turned = 0.1 * frame * kRate;
+    return motion(kSpeed / kRate * Eigen::Vector3d(std::sin(turned), 1.0 - std::cos(turned), 0.0), {0.0, 0.0, turned});
+  };
+  const auto stamp = [](int frame) { return std::int64_t{1000000000} + 100000000 * frame; };
+  ImuBuffer buffer;
+  for (std::int64_t ns = stamp(0); ns <= stamp(22); ns += 5000000) {
+    ImuSample sample;
+    sample.stamp_ns = ns;
+    sample.angular_velocity << 0.01, -0.01, kRate;
+    sample.linear_acceleration << 0.03, kSpeed * kRate - 0.04, 9.81 + (ns % 10000000 == 0 ? 0.01 : -0.01);
+    buffer.add(sample);
+  }
+  InertialMotion model(ImuCalibration(), {}, &buffer, false);
+  const auto tilt_error = [&] { return std::acos(std::min(1.0, model.up().z())); };
+  ASSERT_TRUE(model.initialize(stamp(2)));
+  EXPECT_GT(tilt_error(), 0.25);
+  EXPECT_LT(tilt_error(), 1.5 * model.tiltSigma());
+  for (int frame = 3; frame <= 21; ++frame) {
+    model.advanceTo(stamp(frame));
+    model.correct(seen(pose(frame - 1).inverse() * pose(frame), 5e-3, 3e-4), true);
+    model.markFrame();
+    EXPECT_LT(tilt_error(), 3.0 * model.tiltSigma()) << frame;
+  }
+  EXPECT_LT(tilt_error(), 0.01);
+  EXPECT_LT(model.accelerometerBias().norm(), 0.1);
 }
 
 TEST(InertialMotion, LateSamplesAreWorkedIn) {

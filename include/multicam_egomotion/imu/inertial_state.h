@@ -73,7 +73,9 @@ class InertialState {
   /// The tilt covariance follows the spread of the force and its mismatch with gravity. Quiet samples also give the
   /// gyroscope bias. The velocity is 0 with `initial_velocity_sigma`: inertial sensors cannot tell rest from constant
   /// velocity. Biases known from before are kept. False, and nothing changes, if the samples are too few.
-  bool initialize(const std::vector<ImuSample>& samples);
+  /// `up`: the vertical at the last sample in IMU axes where something better than the force is known to start from;
+  /// the covariance stays that of the force.
+  bool initialize(const std::vector<ImuSample>& samples, const Eigen::Vector3d* up = nullptr);
   bool initialized() const { return initialized_; }
   /// The samples of initialize() were as quiet as at rest.
   bool startedStill() const { return started_still_; }
@@ -173,7 +175,8 @@ class InertialState {
                            double dt, const Unseen& unseen);
   void doubtGyroscope(const Eigen::Vector3d& residual, bool recovered);
   void useGravityWindow();
-  double accelerationSigma(const ForceWindow& window, double floor) const;
+  /// How far the window's mean force may be from gravity, per axis [m/s^2].
+  double accelerationSigma(const ForceWindow& window, bool still) const;
   void correctVertical(const ForceWindow& window, double acceleration_sigma);
   bool correctMotion(const Eigen::Vector3d& residual, const Eigen::Matrix<double, 3, kSize>& H,
                      const Eigen::Matrix3d& covariance, double speed_residual);

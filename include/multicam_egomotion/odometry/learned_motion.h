@@ -13,6 +13,8 @@ struct LearnedMotion {
 };
 
 /// The displacement where its scale is seen or where nothing moves, else its direction at the length that is predicted.
+/// The length's covariance allows for a scale error that lasts from frame to frame: a scale that is still being found
+/// would look like an acceleration and tilt the vertical.
 /// `predicted`: displacement without vision [m]; `scale_seen`: in the frames before; `parallax_px`: image motion with
 /// the rotation taken out; `focal_length` [px].
 LearnedMotion learnedMotion(const WindowEstimate& estimate, const Eigen::Vector3d& predicted, bool scale_seen,

@@ -50,7 +50,8 @@ class MotionModel {
 };
 
 /// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm. Frames that samples
-/// do not reach are bridged; when the samples come, up to a second late, all is done again with them.
+/// do not reach are bridged; when the samples come, up to a second late, all is done again with them. So is a start in
+/// motion, when vision has shown that the accelerometer was far off the vertical.
 class InertialMotion : public MotionModel {
  public:
   /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9).
@@ -83,6 +84,18 @@ class InertialMotion : public MotionModel {
     bool scale_seen = false;
   };
 
+  /// What the start was made from, to make it again.
+  struct Start {
+    InertialState before;
+    std::vector<ImuSample> samples;
+    std::vector<Frame> frames;      // since then
+    Eigen::Matrix3d R_start_frame;  // from the last of the samples
+    Eigen::Vector3d up;             // taken there, IMU axes
+    double tilt_sigma;              // of what the force told [rad]
+  };
+
+  void startAnew();
+  void learn(const RelativeMotion& vision, bool scale_seen);
   void takeTiltFromMessage();
   void propagateTo(std::int64_t stamp_ns);
   void catchUp();
@@ -95,10 +108,12 @@ class InertialMotion : public MotionModel {
   bool tilt_from_message_;
   bool initialized_ = false;
 
-  InertialState complete_;           // at the last frame that the samples reached
-  std::vector<Frame> bridged_;       // the frames since then
-  Frame newest_;                     // not yet marked
-  bool samples_were_short_ = false;  // since complete_
+  InertialState complete_;               // at the last frame that the samples reached
+  std::vector<Frame> bridged_;           // the frames since then
+  Frame newest_;                         // not yet marked
+  bool samples_were_short_ = false;      // since complete_
+  std::optional<Start> start_;           // while it may be made again
+  std::optional<Start> complete_start_;  // the same at complete_
 };
 
 /// Goes on turning and moving as between the last two frames; the vertical is carried by visual rotation.
