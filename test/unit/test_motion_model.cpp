@@ -297,13 +297,14 @@ TEST(InertialMotion, AStartInACurveFindsTheVertical) {
     const double turned = 0.1 * frame * kRate;
     return motion(kSpeed / kRate * Eigen::Vector3d(std::sin(turned), 1.0 - std::cos(turned), 0.0), {0.0, 0.0, turned});
   };
-  const auto stamp = [](int frame) { return std::int64_t{1000000000} + 100000000 * frame; };
+  const auto stamp = [](int frame) { return std::int64_t{1000000000} + std::int64_t{100000000} * frame; };
   ImuBuffer buffer;
   for (std::int64_t ns = stamp(0); ns <= stamp(22); ns += 5000000) {
     ImuSample sample;
     sample.stamp_ns = ns;
     sample.angular_velocity << 0.01, -0.01, kRate;
-    sample.linear_acceleration << 0.03, kSpeed * kRate - 0.04, 9.81 + (ns % 10000000 == 0 ? 0.01 : -0.01);
+    sample.linear_acceleration << 0.03, kSpeed * kRate - 0.04,
+        9.81 + (ns % 10000000 == 0 ? 0.01 : -0.01);  // never twice the same
     buffer.add(sample);
   }
   InertialMotion model(ImuCalibration(), {}, &buffer, false);
