@@ -16,8 +16,8 @@ constexpr double kUnseen = 0.01;                     // inliers expected at a di
 constexpr double kBent = 2.0;                        // outliers to which the pose may have been bent
 
 constexpr double kMeanDistrust = 0.25;
-constexpr double kFirstParallax = 0.1, kLeastParallax = 1e-8;  // squared [rad^2]
-constexpr int kParallaxSteps = 5;
+constexpr double kFirstLeverage = 0.1, kLeastLeverage = 1e-8;  // [rad^2]
+constexpr int kLeverageSteps = 5;
 
 // Half octaves of the nearness; points without parallax are the farthest.
 int binOf(double nearness) {
@@ -25,14 +25,14 @@ int binOf(double nearness) {
   return std::min(std::max(std::ilogb(nearness * nearness) - kFarthest, 1), kBins);
 }
 
-// Squared parallax s at which the mean of p / (p + s) over squared parallaxes p is kMeanDistrust: a fixed point.
-double trustedParallax(const std::vector<double>& squared_parallaxes) {
-  double scale = kFirstParallax;
-  for (int i = 0; i < kParallaxSteps; ++i) {
+// Leverage s at which the mean of q / (q + s) over leverages q is kMeanDistrust: a fixed point.
+double trustedLeverage(const std::vector<double>& leverages) {
+  double scale = kFirstLeverage;
+  for (int i = 0; i < kLeverageSteps; ++i) {
     double sum = 0.0;
-    for (double p : squared_parallaxes) sum += p / (p + scale);
-    const double distrust = std::min(std::max(sum / std::max<std::size_t>(1, squared_parallaxes.size()), 1e-3), 0.9);
-    scale = std::max(scale * distrust / (1.0 - distrust) * (1.0 - kMeanDistrust) / kMeanDistrust, kLeastParallax);
+    for (double q : leverages) sum += q / (q + scale);
+    const double distrust = std::min(std::max(sum / std::max<std::size_t>(1, leverages.size()), 1e-3), 0.9);
+    scale = std::max(scale * distrust / (1.0 - distrust) * (1.0 - kMeanDistrust) / kMeanDistrust, kLeastLeverage);
   }
   return scale;
 }
@@ -61,16 +61,16 @@ void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, d
     if (outliers == 0.0) largest[bin] = limit * limit;
   }
   weights->assign(errors.size(), 0.0);
-  std::vector<double> parallaxes;
-  parallaxes.reserve(errors.size());
+  std::vector<double> leverages;
+  leverages.reserve(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!(errors[i] * errors[i] < largest[binOf(residuals.nearness[i])])) continue;
     (*weights)[i] = 1.0;
-    parallaxes.push_back(residuals.squared_parallaxes[i]);
+    leverages.push_back(residuals.leverages[i]);
   }
-  const double scale = trustedParallax(parallaxes);
+  const double scale = trustedLeverage(leverages);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    (*weights)[i] *= scale / (scale + residuals.squared_parallaxes[i]);
+    (*weights)[i] *= scale / (scale + residuals.leverages[i]);
   }
 }
 

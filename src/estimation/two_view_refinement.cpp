@@ -25,6 +25,8 @@ constexpr double kSteadySigma = 0.02;
 constexpr int kAdaptiveIterations = 8;
 constexpr double kSmallStep = 1e-4;  // squared length in sigmas of a step that no longer matters
 constexpr double kLargestLambda = 1e6;
+constexpr int kTrustSteps = 6;
+constexpr double kFullTrust = 0.98;  // of a baseline from which on its length is known
 
 TwoViewNoise noiseOf(double sigma, const TwoViewRefinementOptions& options, double max_error_px) {
   const double limit = std::min(kLimitSigmas * sigma, max_error_px);
@@ -51,15 +53,28 @@ double measuredSigma(const TwoViewNormalEquations& equations, const RobustLoss& 
 }
 
 // The noise of an observation is the same whatever its weight w: with A = sum of w J J^T and B = sum of w^2 J J^T, the
-// covariance is A^-1 B A^-1.
-Matrix6d covarianceOf(const TwoViewNormalEquations& equations, RayBlocks<double> rays, const TwoViewNoise& noise,
+// covariance is A^-1 B A^-1. Where a pair's baseline may be as long as it is uncertain, that of the baselines so found
+// tells how much less it is worth: a fixed point.
+Matrix6d covarianceOf(const TwoViewNormalEquations& equations, const RayBlocks<double>& rays, const TwoViewNoise& noise,
                       const MotionPriors& priors, const TwoViewEstimate& estimate) {
-  for (RayBlock<double>& block : rays.blocks) {
+  RayBlocks<double> squared = rays;
+  for (RayBlock<double>& block : squared.blocks) {
     for (double& weight : block.weight) weight *= weight;
   }
-  const Matrix6d B = linearizeTwoView(rays, false, noise, priors, estimate.R, estimate.t).information;
-  const Matrix6d inverse = equations.information.llt().solve(Matrix6d::Identity());
-  return inverse * B * inverse;
+  const auto information = [&](const RayBlocks<double>& of, const std::vector<double>& trust) {
+    return linearizeTwoView(of, false, noise, priors, estimate.R, estimate.t, trust).information;
+  };
+  const auto covariance = [&](const Matrix6d& A, const std::vector<double>& trust) {
+    const Matrix6d inverse = A.llt().solve(Matrix6d::Identity());
+    return Matrix6d(inverse * information(squared, trust) * inverse);
+  };
+  Matrix6d found = covariance(equations.information, {});
+  for (int i = 0; i < kTrustSteps; ++i) {
+    const std::vector<double> trust = baselineTrust(rays.segments, estimate.R, estimate.t, found);
+    if (std::all_of(trust.begin(), trust.end(), [](double one) { return one > kFullTrust; })) break;
+    found = covariance(information(rays, trust), trust);
+  }
+  return found;
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace multicam_egomotion {
 /// distances of the other inliers; the density of outliers is seen in the errors between 2 and 22 times `limit` [px].
 /// No error of `limit` or more is an inlier.
 ///
-/// The others weigh 1 / (1 + p^2 / s^2) by their parallax p, with s such that this is 3/4 in the mean: outliers by
-/// chance mostly have a parallax larger than any inlier, and with it so much influence on the translation that they
-/// would bend the pose until they fit.
+/// The others weigh 1 / (1 + q / s) by their leverage q, with s such that this is 3/4 in the mean: outliers by chance
+/// mostly have a larger parallax than any inlier, the more so where the baseline of their camera pair is short, and
+/// with it so much influence on the translation that they would bend the pose until they fit.
 void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, double limit,
                   std::vector<double>* weights);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "multicam_egomotion/estimation/motion_priors.h"
 #include "multicam_egomotion/estimation/ray_blocks.h"
@@ -31,9 +32,17 @@ struct TwoViewNormalEquations {
   Eigen::Matrix<double, 6, 1> step(double lambda) const;
 };
 
-/// In single precision for steps towards a solution, in double precision for the solution.
+/// A pair tells the direction of its baseline, and of the pose so much the more the shorter that is. What is left of it
+/// when the length L has a variance v under a covariance of the pose: L^2 / (L^2 + v), by segment, over that of the
+/// pair whose baseline is known best; a scale that all share stays open.
+std::vector<double> baselineTrust(const std::vector<RaySegment>& segments, const Eigen::Matrix3d& R,
+                                  const Eigen::Vector3d& t, const Eigen::Matrix<double, 6, 6>& covariance);
+
+/// In single precision for steps towards a solution, in double precision for the solution. `trust` (baselineTrust), by
+/// segment, scales the information; none: 1.
 template <class T>
 TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_only, const TwoViewNoise& noise,
-                                        const MotionPriors& priors, const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
+                                        const MotionPriors& priors, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                                        const std::vector<double>& trust = {});
 
 }  // namespace multicam_egomotion
