@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace multicam_egomotion {
 namespace {
@@ -14,6 +15,8 @@ constexpr double kCoreSigmas = 2.5;
 constexpr double kSideBegin = 2.0, kSideEnd = 22.0;  // in limits
 constexpr double kUnseen = 0.01;                     // inliers expected at a distance at which no other is
 constexpr double kBent = 2.0;                        // outliers to which the pose may have been bent
+
+constexpr double kLeastProbability = 0.1;  // of an inlier
 
 constexpr double kMeanDistrust = 0.25;
 constexpr double kFirstLeverage = 0.1, kLeastLeverage = 1e-8;  // [rad^2]
@@ -48,24 +51,26 @@ void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, d
     if (errors[i] < core) ++core_counts[binOf(residuals.nearness[i])];
     if (errors[i] > kSideBegin * limit && errors[i] < kSideEnd * limit) ++side_counts[binOf(residuals.nearness[i])];
   }
-  // Squared error up to which the inliers are denser than the outliers.
-  std::array<double, kBins + 1> largest{};
+  // Density of inliers without error over that of outliers.
+  std::array<double, kBins + 1> odds{};
   for (int bin = 1; bin <= kBins; ++bin) {
     const auto window = [bin](const std::array<int, kBins + 2>& counts) {
       return counts[bin - 1] + counts[bin] + counts[bin + 1];
     };
     const double outliers = window(side_counts) / ((kSideEnd - kSideBegin) * limit);  // a pixel
     const double others = std::max(window(core_counts) - 1.0 - kBent - outliers * core, kUnseen);
-    const double odds = others * std::sqrt(2.0 / M_PI) / (sigma * std::max(outliers, 1e-6));
-    largest[bin] = odds > 1.0 ? std::min(2.0 * sigma * sigma * std::log(odds), limit * limit) : 0.0;
-    if (outliers == 0.0) largest[bin] = limit * limit;
+    odds[bin] =
+        outliers > 0.0 ? others * std::sqrt(2.0 / M_PI) / (sigma * outliers) : std::numeric_limits<double>::infinity();
   }
   weights->assign(errors.size(), 0.0);
   std::vector<double> leverages;
   leverages.reserve(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!(errors[i] * errors[i] < largest[binOf(residuals.nearness[i])])) continue;
-    (*weights)[i] = 1.0;
+    if (!(errors[i] < limit)) continue;
+    const double square = errors[i] / sigma * (errors[i] / sigma);
+    const double probability = 1.0 / (1.0 + std::exp(0.5 * square) / odds[binOf(residuals.nearness[i])]);
+    if (probability < kLeastProbability) continue;
+    (*weights)[i] = probability;
     leverages.push_back(residuals.leverages[i]);
   }
   const double scale = trustedLeverage(leverages);

@@ -39,11 +39,12 @@ std::vector<double> baselineTrust(const std::vector<RaySegment>& segments, const
 template <class T>
 TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_only, const TwoViewNoise& noise,
                                         const MotionPriors& priors, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
-                                        const std::vector<double>& trust) {
+                                        const std::vector<double>& shares) {
   TwoViewNormalEquations equations;
   equations.H.setZero();
   equations.information.setZero();
   equations.g.setZero();
+  equations.shares.assign(rays.segments.size(), 0.0);
   double loss = 0.0;
   for (std::size_t k = 0; k < rays.segments.size(); ++k) {
     const RaySegment& segment = rays.segments[k];
@@ -80,8 +81,9 @@ TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_onl
     H_pair << H_bb, H_ab.transpose(), H_ab, H_aa;
     equations.H += A.transpose() * H_pair * A;
     const double feigned = 2.0 * noise.pixel_sigma * noise.pixel_sigma * sums.parallax_noise;
-    double share = sums.parallax > feigned ? 1.0 - feigned / sums.parallax : 0.0;
-    if (!trust.empty()) share *= trust[k];
+    const double measured = sums.parallax > feigned ? 1.0 - feigned / sums.parallax : 0.0;
+    const double share = shares.empty() ? measured : shares[k];
+    equations.shares[k] = share;
     H_pair.topLeftCorner<3, 3>() *= share;
     H_pair.topRightCorner<3, 3>() *= std::sqrt(share);
     H_pair.bottomLeftCorner<3, 3>() *= std::sqrt(share);
