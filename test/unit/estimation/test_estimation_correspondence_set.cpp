@@ -11,9 +11,6 @@
 namespace multicam_egomotion {
 namespace {
 
-const Eigen::Vector3d kRotation(0.02, -0.03, 0.08);
-const Eigen::Vector3d kTranslation(-0.4, 0.1, 0.05);
-
 constexpr double kLimit = 1000.0;  // [px], behind a camera
 
 std::vector<double> errorsOf(const CorrespondenceSet& set, const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
