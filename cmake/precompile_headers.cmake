@@ -1,6 +1,13 @@
 # precompile_headers(GROUP TARGET HEADER...): the first target of a group precompiles the headers (of other projects
-# only), the others use what it made. A group is of one kind, libraries or executables, and of one set of options.
+# only), the others use what it made. A group has one set of options; its executables are compiled as libraries are.
 function(precompile_headers group target)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE")
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(${target} PRIVATE -fPIC)
+  else()
+    set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
+  endif()
   get_property(owner GLOBAL PROPERTY precompiling_${group})
   if(owner)
     target_precompile_headers(${target} REUSE_FROM ${owner})

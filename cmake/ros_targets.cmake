@@ -1,7 +1,7 @@
 # The ROS library, nodelet, node and bag tools, and everything that is installed for them.
-find_package(Boost REQUIRED COMPONENTS program_options)
-
 layer_sources(ros_sources ros)
+# The message that it includes has the name of a class that the others use.
+set_source_files_properties(src/ros/ego_motion_message.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 add_library(multicam_egomotion_ros ${ros_sources})
 add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})
@@ -19,14 +19,16 @@ precompile_headers(ros_libraries multicam_egomotion_nodelet)
 add_executable(egomotion_node src/tools/egomotion_node.cpp)
 target_include_directories(egomotion_node PRIVATE src/tools)
 target_link_libraries(egomotion_node multicam_egomotion_ros)
+precompile_headers(ros_libraries egomotion_node)
 
 layer_sources(bag_runner_sources tools/bag_runner)
 add_library(multicam_egomotion_bag_runner STATIC ${bag_runner_sources})
 target_include_directories(multicam_egomotion_bag_runner PUBLIC src/tools)
-target_link_libraries(multicam_egomotion_bag_runner PUBLIC multicam_egomotion_ros PRIVATE Boost::program_options)
+target_link_libraries(multicam_egomotion_bag_runner PUBLIC multicam_egomotion_ros PRIVATE boost_program_options)
 precompile_headers(ros_libraries multicam_egomotion_bag_runner)
 add_executable(egomotion_bag src/tools/egomotion_bag.cpp)
 target_link_libraries(egomotion_bag multicam_egomotion_bag_runner)
+precompile_headers(ros_libraries egomotion_bag)
 
 layer_sources(fault_injection_sources tools/fault_injection)
 add_library(multicam_egomotion_fault_injection STATIC ${fault_injection_sources})
@@ -35,15 +37,14 @@ target_include_directories(multicam_egomotion_fault_injection SYSTEM PUBLIC ${ca
 target_link_libraries(multicam_egomotion_fault_injection PUBLIC multicam_egomotion_core ${catkin_LIBRARIES})
 precompile_headers(ros_libraries multicam_egomotion_fault_injection)
 add_executable(corrupt_bag src/tools/corrupt_bag.cpp)
-target_link_libraries(corrupt_bag multicam_egomotion_fault_injection Boost::program_options)
+target_link_libraries(corrupt_bag multicam_egomotion_fault_injection boost_program_options)
+precompile_headers(ros_libraries corrupt_bag)
 
-set(ros_tools egomotion_node egomotion_bag corrupt_bag)
-if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/src/tools/egomotion_sim.cpp)
-  add_executable(egomotion_sim src/tools/egomotion_sim.cpp)
-  target_include_directories(egomotion_sim SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
-  target_link_libraries(egomotion_sim multicam_egomotion_simulator ${catkin_LIBRARIES} Boost::program_options)
-  list(APPEND ros_tools egomotion_sim)
-endif()
+add_executable(egomotion_sim src/tools/egomotion_sim.cpp)
+target_include_directories(egomotion_sim SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
+target_link_libraries(egomotion_sim multicam_egomotion_simulator ${catkin_LIBRARIES} boost_program_options)
+precompile_headers(ros_libraries egomotion_sim)
+set(ros_tools egomotion_node egomotion_bag corrupt_bag egomotion_sim)
 
 install(TARGETS multicam_egomotion_ros multicam_egomotion_nodelet
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}

@@ -49,7 +49,7 @@ input=${input:+$(realpath "$input")}
 rig=${rig:+$(realpath "$rig")}
 
 # --- Build ------------------------------------------------------------------------------------------------------------
-"$package/scripts/setup.sh"
+"$package/scripts/setup.sh" --rviz
 configure "$build"
 cmake --build "$build" -j "$jobs"
 source_ros "$build/devel/setup.bash"

@@ -23,8 +23,11 @@ unset ROS_HOSTNAME
 export ROS_IP=127.0.0.1
 export ROS_HOME=$build/ros_home
 
-configure() {  # configure BUILD_DIR [CMAKE_ARGUMENT ...]
+# configure BUILD_DIR [CMAKE_ARGUMENT ...]: what is compiled from nothing more often than after an edit is compiled in
+# batches of files (a unity build); their generated text is the same in every build directory, for ccache.
+configure() {
   local directory=$1
   shift
-  cmake -S "$package" -B "$directory" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"
+  cmake -S "$package" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_BASEDIR=$directory;ccache" "$@"
 }

@@ -1,27 +1,30 @@
 #!/bin/bash
 # SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 # SPDX-License-Identifier: BSD-3-Clause
-# setup.sh [PACKAGE ...]: installs with apt what building, testing and the demo need, and the packages named, as far as
-# it is missing; does nothing when all is there. Debian 12 has ROS 1 in its own archive; on Ubuntu 20.04, ROS Noetic's
-# packages are used (/opt/ros/noetic).
+# setup.sh [--rviz] [PACKAGE ...]: installs with apt what building and testing need, with --rviz what its pictures need
+# as well, and the packages named, as far as it is missing; does nothing when all is there. Debian 12 has ROS 1 in its
+# own archive; on Ubuntu 20.04, ROS Noetic's packages are used (/opt/ros/noetic).
 set -euo pipefail
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
 packages=(
   # build
-  g++ make cmake ccache libboost-program-options-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
+  g++ ninja-build cmake ccache libboost-program-options-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
   pybind11-dev python3-dev
   # scripts
   python3 python3-matplotlib python3-numpy python3-pil python3-yaml
   # tests
   clang-format catkin-lint libbenchmark-dev libgtest-dev
-  # pictures of rviz without a screen
-  imagemagick libgl1-mesa-dri xvfb
 )
+if [[ ${1:-} == --rviz ]]; then
+  shift
+  packages+=(imagemagick libgl1-mesa-dri xvfb)  # without a screen
+  if [[ -d /opt/ros/noetic ]]; then packages+=(ros-noetic-rviz); else packages+=(rviz); fi
+fi
 if [[ -d /opt/ros/noetic ]]; then
   for name in catkin cv-bridge diagnostic-updater dynamic-reconfigure geometry-msgs image-transport \
     message-generation message-runtime nav-msgs nodelet pluginlib rosbag rosbash roscpp roslaunch rosnode rosparam \
-    rospy rosservice rostest rviz sensor-msgs std-msgs std-srvs tf2 tf2-eigen tf2-msgs tf2-ros topic-tools; do
+    rospy rosservice rostest sensor-msgs std-msgs std-srvs tf2 tf2-eigen tf2-msgs tf2-ros topic-tools; do
     packages+=("ros-noetic-$name")
   done
 else
@@ -31,8 +34,8 @@ else
     librostest-dev libsensor-msgs-dev libstd-msgs-dev libstd-srvs-dev libtf2-dev libtf2-eigen-dev libtf2-msgs-dev
     libtf2-ros-dev pluginlib-dev python3-diagnostic-msgs python3-dynamic-reconfigure python3-genpy python3-geometry-msgs
     python3-nav-msgs python3-rosbag python3-roslaunch python3-rosnode python3-rosparam python3-rospy python3-rosservice
-    python3-rostest python3-sensor-msgs python3-std-srvs ros-geometry-msgs ros-message-generation ros-message-runtime
-    ros-std-msgs rosbash rospack-tools rviz topic-tools
+    python3-rostest python3-sensor-msgs python3-std-srvs python3-tf2-msgs ros-geometry-msgs ros-message-generation
+    ros-message-runtime ros-std-msgs rosbash rospack-tools topic-tools
   )
 fi
 

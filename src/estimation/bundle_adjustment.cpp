@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/estimation/bundle_adjustment.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
@@ -14,7 +14,7 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Points stay in front: beyond infinity a reversed translation would explain the images as well [1/m].
-constexpr double kFarthest = 1e-4;
+constexpr double kSmallestInverseDistance = 1e-4;
 
 // Two unit vectors that complete `direction` to an orthogonal frame.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
@@ -207,7 +207,7 @@ void BundleAdjustment::accumulateRest(Eigen::MatrixXd* H, Eigen::VectorXd* b) co
     Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
     information.topLeftCorner<3, 3>() = factor.translation_information;
     information.bottomRightCorner<3, 3>() = factor.rotation_information;
-    const Eigen::Matrix<double, 12, 12> JtJ = J.transpose() * information * J;
+    const Eigen::Matrix<double, 12, 12> JtJ = propagated(J.transpose(), information);
     const Eigen::Matrix<double, 12, 1> Jtr = -J.transpose() * information * r;
     H->block<6, 6>(ia, ia) += JtJ.block<6, 6>(0, 0);
     H->block<6, 6>(ia, ib) += JtJ.block<6, 6>(0, 6);
@@ -257,7 +257,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
     H.diagonal().array() += 1e-9;
     step.setZero();
     if (size > fixed) {
-      step.tail(size - fixed) = H.bottomRightCorner(size - fixed, size - fixed).ldlt().solve(b.tail(size - fixed));
+      step.tail(size - fixed) = symmetricSolve(H.bottomRightCorner(size - fixed, size - fixed), b.tail(size - fixed));
     }
     if (!step.allFinite()) {
       summary.finite = false;
@@ -278,7 +278,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
       }
       const Eigen::Vector3d d = block.H_inverse * rhs;
       landmark.direction = (landmark.direction + tangentBasis(landmark.direction) * d.head<2>()).normalized();
-      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kFarthest);
+      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kSmallestInverseDistance);
     }
     const double new_cost = cost(options);
     const double decrease = summary.cost - new_cost;

@@ -128,8 +128,8 @@ bool InertialState::initialize(const std::vector<ImuSample>& samples) {
     H.middleCols<3>(kGyroscopeBias).setIdentity();
     CorrectionCounts counts;
     const double sigma = options_.still_rate_sigma;
-    started_still_ = correct<3>(mean_rate - gyroscope_bias_, H, sigma * sigma * Eigen::Matrix3d::Identity(), &counts,
-                                ErrorState::Zero());
+    started_still_ = correct(mean_rate - gyroscope_bias_, H, sigma * sigma * Eigen::Matrix3d::Identity(), &counts,
+                             ErrorState::Zero());
   }
 
   ForceWindow window;  // in IMU axes at the end
@@ -292,13 +292,12 @@ void InertialState::propagateCovariance(const Eigen::Vector3d& rate, const Eigen
   rate_to_error.middleRows<3>(kTheta) = -R;
   rate_to_error.middleRows<3>(kVelocity) = -skew(velocity_imu);
 
-  covariance_ = (transition * covariance_ * transition.transpose()).eval();
+  covariance_ = propagated(transition, covariance_);
   covariance_ += dt * rate_density * rate_to_error * rate_to_error.transpose();
   covariance_.block<3, 3>(kVelocity, kVelocity).diagonal().array() += dt * force_density;
   covariance_.block<3, 3>(kGyroscopeBias, kGyroscopeBias).diagonal().array() += gyroscope_walk_variance_ * dt;
   covariance_.block<3, 3>(kAccelerometerBias, kAccelerometerBias).diagonal().array() +=
       accelerometer_walk_variance_ * dt;
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
 }
 
 void InertialState::markFrame() {
@@ -348,7 +347,7 @@ double InertialState::tiltSigma() const {
 Eigen::Matrix3d InertialState::velocityCovariance() const {
   Eigen::Matrix<double, 3, 6> J;  // to attitude and velocity, which stand next to each other
   J << -skew(v_odom_), R_odom_imu_;
-  return J * covariance_.block<6, 6>(kTheta, kTheta) * J.transpose();
+  return propagated(J, covariance_.block<6, 6>(kTheta, kTheta));
 }
 
 Eigen::Vector3d InertialState::velocityInImuAxes() const { return R_odom_imu_.transpose() * v_odom_; }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +42,7 @@ bool InertialState::correctRelativeRotation(const Eigen::Matrix3d& R_1_2, const 
   widening.segment<3>(kTheta).setConstant(residual.squaredNorm());
   widening.segment<3>(kGyroscopeBias).setConstant(options_.gyroscope_bias_sigma * options_.gyroscope_bias_sigma);
   const std::uint64_t recoveries = rotation_counts_.recoveries;
-  if (!correct<3>(residual, H, covariance, &rotation_counts_, widening)) {
+  if (!correct(residual, H, covariance, &rotation_counts_, widening)) {
     return false;
   }
   doubtGyroscope(residual, rotation_counts_.recoveries > recoveries);
@@ -91,7 +90,7 @@ bool InertialState::correctMotion(const Eigen::Vector3d& residual, const Eigen::
   widening.segment<3>(kAccelerometerBias)
       .setConstant(options_.accelerometer_bias_sigma * options_.accelerometer_bias_sigma);
   widening.segment<3>(kDisplacement).setConstant(residual.squaredNorm());
-  if (!correct<3>(residual, H, covariance, &velocity_counts_, widening)) {
+  if (!correct(residual, H, covariance, &velocity_counts_, widening)) {
     return false;
   }
   velocity_seen_ns_ = last_.stamp_ns;
@@ -114,7 +113,7 @@ bool InertialState::correctTilt(const Eigen::Matrix3d& R_world_imu, double sigma
   H.middleCols<2>(kTheta).setIdentity();
   ErrorState widening = ErrorState::Zero();
   widening.segment<2>(kTheta).setConstant(residual.squaredNorm());
-  return correct<2>(residual, H, sigma * sigma * Eigen::Matrix2d::Identity(), &tilt_counts_, widening);
+  return correct(residual, H, sigma * sigma * Eigen::Matrix2d::Identity(), &tilt_counts_, widening);
 }
 
 double InertialState::accelerationSigma(const ForceWindow& window, double floor) const {
@@ -140,7 +139,7 @@ void InertialState::correctVertical(const ForceWindow& window, double accelerati
   widening.segment<2>(kTheta).setConstant(residual.squaredNorm() / (options_.gravity * options_.gravity));
   // The platform's acceleration goes with its attitude (a drone's thrust keeps its place in the body) and would be
   // taken for an accelerometer bias: the bias is only considered (Schmidt), not learnt here.
-  correct<2>(residual, H, variance * Eigen::Matrix2d::Identity(), &counts, widening, false);
+  correct(residual, H, variance * Eigen::Matrix2d::Identity(), &counts, widening, false);
 }
 
 void InertialState::useGravityWindow() {
@@ -152,46 +151,40 @@ void InertialState::useGravityWindow() {
     Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
     H.middleCols<3>(kVelocity).setIdentity();
     CorrectionCounts counts;
-    correct<3>(-velocityInImuAxes(), H, variance * Eigen::Matrix3d::Identity(), &counts, ErrorState::Zero(), false);
+    correct(-velocityInImuAxes(), H, variance * Eigen::Matrix3d::Identity(), &counts, ErrorState::Zero(), false);
   }
 }
 
-template <int Rows>
-bool InertialState::correct(const Eigen::Matrix<double, Rows, 1>& residual, const Eigen::Matrix<double, Rows, kSize>& H,
-                            const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts,
-                            const ErrorState& widening, bool learn_accelerometer_bias) {
-  using Square = Eigen::Matrix<double, Rows, Rows>;
-  const Square symmetric_noise = 0.5 * (noise + noise.transpose());
-  if (!residual.allFinite() || !noise.allFinite() || Eigen::LLT<Square>(symmetric_noise).info() != Eigen::Success) {
+bool InertialState::correct(const VectorRef& residual, const MatrixRef& H, const MatrixRef& noise,
+                            CorrectionCounts* counts, const ErrorState& widening, bool learn_accelerometer_bias) {
+  const Eigen::MatrixXd symmetric_noise = 0.5 * (noise + noise.transpose());
+  if (!residual.allFinite() || !isPositiveDefinite(symmetric_noise)) {
     ++counts->invalid;
     return false;
   }
-  Eigen::LLT<Square> innovation(H * covariance_ * H.transpose() + symmetric_noise);
-  if (innovation.info() != Eigen::Success) {
+  Eigen::MatrixXd innovation = propagated(H, covariance_) + symmetric_noise;
+  if (!isPositiveDefinite(innovation)) {
     ++counts->invalid;
     return false;
   }
-  if (residual.dot(innovation.solve(residual)) > chiSquareGate(Rows)) {
+  if (squaredMahalanobis(residual, innovation) > chiSquareGate(static_cast<int>(residual.size()))) {
     ++counts->rejected;
     if (++counts->consecutive_rejections < options_.rejections_before_recovery) {
       return false;
     }
     ++counts->recoveries;
     covariance_.diagonal() += widening;
-    innovation.compute(H * covariance_ * H.transpose() + symmetric_noise);
+    innovation = propagated(H, covariance_) + symmetric_noise;
   }
   counts->consecutive_rejections = 0;
   ++counts->accepted;
 
-  const Eigen::Matrix<double, Rows, kSize> gain_transposed = innovation.solve(H * covariance_);
-  Eigen::Matrix<double, kSize, Rows> gain = gain_transposed.transpose();
+  Eigen::MatrixXd gain = symmetricSolve(innovation, H * covariance_).transpose();
   if (!learn_accelerometer_bias) {
-    gain.template middleRows<3>(kAccelerometerBias).setZero();
+    gain.middleRows<3>(kAccelerometerBias).setZero();
   }
   const Covariance remaining = Covariance::Identity() - gain * H;  // Joseph form, right for any gain
-  covariance_ = (remaining * covariance_ * remaining.transpose()).eval();
-  covariance_ += gain * symmetric_noise * gain.transpose();
-  covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
+  covariance_ = propagated(remaining, covariance_) + propagated(gain, symmetric_noise);
   inject(gain * residual);
   return true;
 }
@@ -216,8 +209,5 @@ void InertialState::inject(const ErrorState& error) {
   accelerometer_bias_ += error.segment<3>(kAccelerometerBias);
   displacement_ += error.segment<3>(kDisplacement);
 }
-
-template bool InertialState::correct<3>(const Eigen::Matrix<double, 3, 1>&, const Eigen::Matrix<double, 3, kSize>&,
-                                        const Eigen::Matrix3d&, CorrectionCounts*, const ErrorState&, bool);
 
 }  // namespace multicam_egomotion

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 
@@ -45,8 +46,7 @@ void ConstantRateMotion::correct(const RelativeMotion& vision, bool scale_seen) 
   const Eigen::Vector3d velocity = to_now * vision.T_a_b.translation() / dt;
   const double change = kAccelerationSigma * dt;
   const Eigen::Matrix3d drift = change * change * Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d covariance =
-      to_now * vision.covariance.topLeftCorner<3, 3>() * to_now.transpose() / (dt * dt) + drift;
+  Eigen::Matrix3d covariance = propagated(to_now, vision.covariance.topLeftCorner<3, 3>()) / (dt * dt) + drift;
   if (scale_seen) {
     twist_.linear = velocity;
   } else {  // the direction is vision's, the speed is what it was
@@ -59,7 +59,7 @@ void ConstantRateMotion::correct(const RelativeMotion& vision, bool scale_seen) 
   twist_.covariance.setZero();
   twist_.covariance.topLeftCorner<3, 3>() = covariance;
   twist_.covariance.bottomRightCorner<3, 3>() =
-      to_now * vision.covariance.bottomRightCorner<3, 3>() * to_now.transpose() / (dt * dt);
+      propagated(to_now, vision.covariance.bottomRightCorner<3, 3>()) / (dt * dt);
 }
 
 double ConstantRateMotion::tiltSigma() const { return kInitialTiltSigma; }

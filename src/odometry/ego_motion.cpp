@@ -37,6 +37,8 @@ constexpr double kMaxSettling = 2.0;           // settled after that in any case
 constexpr double kFewInliers = 0.5;            // share of the tracks below which the gyroscope may be wrong
 constexpr double kManyMore = 1.5;              // times the inliers without the gyroscope, if it is
 constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
+constexpr double kPoorScale = 0.05;            // sigma of the scale above which its error lasts
+constexpr double kRefusedShare = 0.4;          // of the displacements seen, if accelerometer and images disagree
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -121,6 +123,10 @@ class EgoMotion::Impl {
     if (gyroscope_check_.state() == GyroscopeCheck::State::kDisagrees) {
       all.push_back("gyroscope " + gyroscope_check_.report());
     }
+    if (inertial_ && inertial_->refusedShare() > kRefusedShare) {
+      all.push_back(
+          "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or baselines wrong?");
+    }
     return all;
   }
 
@@ -203,7 +209,7 @@ class EgoMotion::Impl {
     inertial_last_ns_ = stamp_ns;
     last_stamp_ns_ = set->stamp_ns;
     coasting_.markFrame(set->stamp_ns, estimated);
-    drift_.follow(published_.pose().translation(), tiltVariance());
+    drift_.follow(published_.pose().translation(), tiltVariance(), estimated ? lastingScaleSigma(result) : 0.0);
     fillState(*motion_, &result);
     result.features = reportFeatures(previous_.frame, newest.frame, inlier_tracks_);
     previous_ = std::move(newest);
@@ -349,6 +355,19 @@ class EgoMotion::Impl {
     const Eigen::Vector3d up = published_.pose().linear() * motion_->up();
     const double offset = std::atan2(up.head<2>().norm(), up.z()), sigma = motion_->tiltSigma();
     return sigma * sigma + 0.5 * offset * offset;
+  }
+
+  // Of the length since the last frame, where its error is not another one in each frame: noise in the images shortens
+  // what they show, and where they show nothing it is the velocity's.
+  static double lastingScaleSigma(const EgoMotionResult& result) {
+    if (!result.has_relative_pose || result.scale_state == ScaleState::kNotApplicable) return 0.0;
+    double sigma = result.scale_sigma;
+    if (result.scale_state == ScaleState::kUnobservable) {
+      const Eigen::Vector3d& motion = result.T_previous_body.pose.translation();
+      const double variance = motion.dot(result.T_previous_body.covariance.topLeftCorner<3, 3>() * motion);
+      sigma = std::sqrt(variance) / std::max(motion.squaredNorm(), 1e-12);
+    }
+    return sigma < kPoorScale && result.scale_state == ScaleState::kObservable ? 0.0 : std::min(1.0, sigma);
   }
 
   // Vision failed or starts anew: the pose goes on with the predicted motion, the window starts anew from there.

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/frame_consensus.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "multicam_egomotion/estimation/minimal_solvers.h"
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
@@ -42,54 +41,6 @@ struct TwoPointTranslation {
   }
 };
 
-struct Matches {
-  std::vector<CorrespondenceSet::Entry> entries;
-  std::vector<TrackId> tracks;      // by entry
-  std::vector<double> parallax_px;  // by entry; negative between different cameras
-};
-
-// Image scale at an observation [px/rad].
-double pixelsPerRadian(const FeatureObservation& feature) { return feature.to_pixel.norm() / std::sqrt(2.0); }
-
-// All pairs of views of one track at t1 and t2; both frames are sorted by track.
-Matches matchTracks(const PosedFrame& previous, const PosedFrame& newest, const Eigen::Matrix3d& R_f2_f1) {
-  Matches matches;
-  const auto& first = previous.frame.observations;
-  const auto& second = newest.frame.observations;
-  std::size_t begin = 0;
-  for (const FeatureObservation& now : second) {
-    while (begin < first.size() && first[begin].track < now.track) ++begin;
-    for (std::size_t i = begin; i < first.size() && first[i].track == now.track; ++i) {
-      const FeatureObservation& then = first[i];
-      const Eigen::Isometry3d& T1 = previous.T_body_cam[then.camera];
-      const Eigen::Isometry3d& T2 = newest.T_body_cam[now.camera];
-      CorrespondenceSet::Entry entry;
-      entry.rays.first = makeRay(T1.linear() * then.bearing, T1.translation());
-      entry.rays.second = makeRay(T2.linear() * now.bearing, T2.translation());
-      entry.rays.camera1 = then.camera;
-      entry.rays.camera2 = now.camera;
-      entry.pixels_per_radian1 = pixelsPerRadian(then);
-      entry.pixels_per_radian2 = pixelsPerRadian(now);
-      matches.entries.push_back(entry);
-      matches.tracks.push_back(now.track);
-      double parallax = -1.0;
-      if (then.camera == now.camera) {
-        const Eigen::Vector3d expected = T2.linear().transpose() * (R_f2_f1 * entry.rays.first.direction);
-        const double depth = now.bearing.dot(expected);
-        if (depth > 0.1) parallax = (now.to_pixel * expected).norm() / depth;
-      }
-      matches.parallax_px.push_back(parallax);
-    }
-  }
-  return matches;
-}
-
-std::vector<Eigen::Vector3d> centers(const std::vector<Eigen::Isometry3d>& T_body_cam) {
-  std::vector<Eigen::Vector3d> result;
-  for (const Eigen::Isometry3d& T : T_body_cam) result.push_back(T.translation());
-  return result;
-}
-
 }  // namespace
 
 FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newest, const MotionSummary& motion,
@@ -97,15 +48,15 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
                              const RobustEstimatorOptions& options, std::uint64_t seed) {
   FrameConsensus consensus;
   const Eigen::Matrix3d R_f2_f1 = motion.T_a_b.linear().transpose();
-  const Matches matches = matchTracks(previous, newest, R_f2_f1);
-  consensus.correspondences = static_cast<int>(matches.entries.size());
-  const CorrespondenceSet set(matches.entries, centers(previous.T_body_cam), centers(newest.T_body_cam));
+  const TrackMatches matches = matchTracks(previous, newest, R_f2_f1);
+  const CorrespondenceSet& set = matches.set;
+  consensus.correspondences = static_cast<int>(set.size());
 
   // R_a_b Exp(d) transposed is Exp(-d) R_f2_f1, so the covariance is that of the left perturbation.
   MotionPriors priors;
-  priors.rotation = {R_f2_f1, motion.rotation_covariance.ldlt().solve(Eigen::Matrix3d::Identity())};
+  priors.rotation = {R_f2_f1, symmetricInverse(motion.rotation_covariance)};
   const Eigen::Vector3d rotation_vector = logSO3(R_f2_f1);
-  const double angle_sigma = std::sqrt(motion.rotation_covariance.selfadjointView<Eigen::Lower>().eigenvalues()[2]);
+  const double angle_sigma = std::sqrt(symmetricEigenvalues(motion.rotation_covariance)[2]);
   RobustEstimate estimated;
   if (set.cameraPairs().size() == 1) {
     const CorrespondenceSet::CameraPair& pair = set.cameraPairs().front();

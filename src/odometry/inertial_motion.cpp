@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
 #include "multicam_egomotion/odometry/motion_model.h"
@@ -17,6 +18,7 @@ constexpr std::int64_t kLatestSamples = 1000000000;  // samples that come later 
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
 constexpr double kDisplacementModelShare = 0.005;  // of the distance
+constexpr double kRefusedMemory = 20.0;            // frames over which the share of the refused ones is taken
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
@@ -97,11 +99,11 @@ MotionSummary InertialMotion::motionSinceFrame() const {
   const Eigen::Matrix3d R_body_imu = calibration_.T_body_imu.linear();
   MotionSummary motion;
   motion.T_a_b = bodyRelativePose(calibration_.T_body_imu, T_imu1_imu2);
-  motion.rotation_covariance = R_body_imu * state_.rotationSinceFrameCovariance() * R_body_imu.transpose();
+  motion.rotation_covariance = propagated(R_body_imu, state_.rotationSinceFrameCovariance());
   // The lever arm turns with the body.
   const Eigen::Matrix3d arm = motion.T_a_b.linear() * skew(calibration_.T_body_imu.translation());
-  motion.translation_covariance = R_body_imu * state_.displacementSinceFrameCovariance() * R_body_imu.transpose() +
-                                  arm * motion.rotation_covariance * arm.transpose();
+  motion.translation_covariance =
+      propagated(R_body_imu, state_.displacementSinceFrameCovariance()) + propagated(arm, motion.rotation_covariance);
   return motion;
 }
 
@@ -112,18 +114,18 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
   // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
   const Eigen::Matrix3d to_second = R_imu_body * vision.T_a_b.linear().transpose();
-  const Eigen::Matrix3d rotation_covariance =
-      to_second * vision.covariance.bottomRightCorner<3, 3>() * to_second.transpose() +
-      kRotationModelSigma * kRotationModelSigma * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d rotation_covariance = propagated(to_second, vision.covariance.bottomRightCorner<3, 3>()) +
+                                              kRotationModelSigma * kRotationModelSigma * Eigen::Matrix3d::Identity();
   state_.correctRelativeRotation(T_imu1_imu2.linear(), rotation_covariance);
   if (!scale_seen) return;
   const double share = kDisplacementModelShare * T_imu1_imu2.translation().norm();
   Eigen::Matrix<double, 3, 6> to_imu;  // of the IMU's displacement by that of the body and its rotation
   to_imu << R_imu_body, -R_imu_body * skew(vision.T_a_b.linear() * calibration_.T_body_imu.translation());
   const Eigen::Matrix3d displacement_covariance =
-      to_imu * vision.covariance * to_imu.transpose() +
+      propagated(to_imu, vision.covariance) +
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
-  state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  const bool accepted = state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  refused_share_ += ((accepted ? 0.0 : 1.0) - refused_share_) / kRefusedMemory;
 }
 
 Eigen::Vector3d InertialMotion::up() const {
@@ -143,9 +145,9 @@ TwistWithCovariance InertialMotion::twist() const {
   const Eigen::Matrix3d rate_covariance =
       state_.gyroscopeBiasCovariance() + density * density * calibration_.rate_hz * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d arm = skew(calibration_.T_body_imu.translation());
-  twist.covariance.bottomRightCorner<3, 3>() = R_body_imu * rate_covariance * R_body_imu.transpose();
-  twist.covariance.topLeftCorner<3, 3>() = R_body_imu * state_.velocityCovarianceInImuAxes() * R_body_imu.transpose() +
-                                           arm * twist.covariance.bottomRightCorner<3, 3>() * arm.transpose();
+  twist.covariance.bottomRightCorner<3, 3>() = propagated(R_body_imu, rate_covariance);
+  twist.covariance.topLeftCorner<3, 3>() = propagated(R_body_imu, state_.velocityCovarianceInImuAxes()) +
+                                           propagated(arm, twist.covariance.bottomRightCorner<3, 3>());
   return twist;
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
+#include "multicam_egomotion/imu/imu_mounting.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -33,12 +35,11 @@ Matrix6d propagateCovariance(const Matrix6d& covariance, const Eigen::Isometry3d
   F.topRightCorner<3, 3>() = -skew(T_odom_previous.linear() * T_previous_body.translation());
   Matrix6d G = Matrix6d::Zero();
   G.topLeftCorner<3, 3>() = G.bottomRightCorner<3, 3>() = T_odom_previous.linear();
-  return F * covariance * F.transpose() + G * motion_covariance * G.transpose();
+  return propagated(F, covariance) + propagated(G, motion_covariance);
 }
 
 Eigen::Matrix3d tiltCorrection(const Eigen::Matrix3d& R_odom_body, const Eigen::Vector3d& up, double sigma) {
-  const Eigen::Vector3d error =
-      logSO3(Eigen::Quaterniond::FromTwoVectors(R_odom_body * up, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  const Eigen::Vector3d error = shortestArc(R_odom_body * up, Eigen::Vector3d::UnitZ());
   const double angle = error.norm();
   const double excess = angle - kIgnoredSigmas * sigma;
   return excess > 0.0 ? expSO3(error * (excess / angle)) : Eigen::Matrix3d::Identity();

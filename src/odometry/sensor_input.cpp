@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 namespace multicam_egomotion {
 namespace {
 
 constexpr double kJumpBack = 0.5;  // images whose stamps go back by more tell a jump of the clock by themselves [s]
+constexpr double kImagesFarBehind = 5.0;  // the IMU, where no buffer keeps its samples that long [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
@@ -135,8 +137,27 @@ void SensorInput::count(EgoMotionCounters* counters) const {
                                image_monitor_.wrongSizes();
 }
 
+// IMU and images whose times do not meet.
+std::optional<std::string> SensorInput::apart() const {
+  const std::int64_t image_ns = *std::max_element(latest_image_ns_.begin(), latest_image_ns_.end());
+  if (!use_imu_ || image_ns == 0 || imu_buffer_.latestStamp() == 0) return std::nullopt;
+  const double behind_s = seconds(image_ns - imu_buffer_.latestStamp());
+  char text[100];
+  if (behind_s > max_imu_wait_s_) {
+    std::snprintf(text, sizeof(text), "IMU: newest sample %.1f s behind the images: silent, late, or clocks apart?",
+                  behind_s);
+  } else if (behind_s < -kImagesFarBehind) {
+    std::snprintf(text, sizeof(text), "images: newest %.1f s behind the IMU: silent, late, or clocks apart?",
+                  -behind_s);
+  } else {
+    return std::nullopt;
+  }
+  return text;
+}
+
 std::vector<std::string> SensorInput::faults() const {
   std::vector<std::string> all = imu_monitor_.faults();
+  if (const auto fault = apart()) all.push_back(*fault);
   for (int camera = 0; camera < rig_.size(); ++camera) {
     const FrameAssembler::Delivery delivery = assembler_.delivery(camera, now_ns_);
     if (delivery == FrameAssembler::Delivery::kInTime || !image_monitor_.rightSize(camera)) continue;

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/window.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/landmark_distance.h"
 #include "multicam_egomotion/odometry/window_marginals.h"
@@ -28,10 +28,6 @@ Eigen::Isometry3d toIsometry(const BundlePose& pose) {
   T.linear() = pose.R;
   T.translation() = pose.p;
   return T;
-}
-
-Eigen::Matrix3d informationOf(const Eigen::Matrix3d& covariance) {
-  return covariance.ldlt().solve(Eigen::Matrix3d::Identity());
 }
 
 }  // namespace
@@ -95,9 +91,9 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
     factor.pose_a = static_cast<int>(i) - 1;
     factor.pose_b = static_cast<int>(i);
     factor.R_a_b = motion.T_a_b.linear();
-    factor.rotation_information = informationOf(motion.rotation_covariance);
+    factor.rotation_information = symmetricInverse(motion.rotation_covariance);
     factor.p_b_a = motion.T_a_b.translation();
-    if (motion.use_translation) factor.translation_information = informationOf(motion.translation_covariance);
+    if (motion.use_translation) factor.translation_information = symmetricInverse(motion.translation_covariance);
     bundle.factors.push_back(factor);
   }
   for (const auto& [track, landmark] : landmarks_) {
@@ -271,7 +267,7 @@ bool Window::solve(WindowEstimate* estimate) {
   // All moves with the start.
   Matrix6d with_start = Matrix6d::Identity();
   with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
-  estimate->covariance += with_start * start_.covariance * with_start.transpose();
+  estimate->covariance += propagated(with_start, start_.covariance);
   return true;
 }
 

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/window_marginals.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
@@ -65,13 +64,13 @@ LastTwo solveLastTwo(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, int fix
   const int size = static_cast<int>(H.rows()) - fixed;
   Eigen::MatrixXd free = H.bottomRightCorner(size, size);
   free.diagonal().array() += kWeakestInformation;
-  const Eigen::LDLT<Eigen::MatrixXd> decomposition(free);
   const int count = std::min(size, 12);
-  Eigen::MatrixXd selector = Eigen::MatrixXd::Zero(size, count);
-  selector.bottomRows(count).setIdentity();
-  const Eigen::MatrixXd columns = decomposition.solve(selector);
-  result.covariance.bottomRightCorner(count, count) = columns.bottomRows(count);
-  result.step.tail(count) = decomposition.solve(b.tail(size)).tail(count);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, count + 1);
+  columns.bottomLeftCorner(count, count).setIdentity();
+  columns.col(count) = b.tail(size);
+  columns = symmetricSolve(free, columns);
+  result.covariance.bottomRightCorner(count, count) = columns.bottomLeftCorner(count, count);
+  result.step.tail(count) = columns.col(count).tail(count);
   result.covariance = 0.5 * (result.covariance + result.covariance.transpose()).eval();
   return result;
 }
@@ -95,7 +94,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   const LastTwo all = solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0);
   Matrix6d to_odom = Matrix6d::Zero();
   to_odom.topLeftCorner<3, 3>() = to_odom.bottomRightCorner<3, 3>() = newest.R;
-  estimate->covariance = to_odom * all.covariance.bottomRightCorner<6, 6>() * to_odom.transpose();
+  estimate->covariance = propagated(to_odom, all.covariance.bottomRightCorner<6, 6>());
 
   const double systematic = std::pow(bundle->pixel_sigma / std::max(bundle->pixel_sigma, kSystematicError), 2);
   const Eigen::MatrixXd scale_H = systematic * vision_H;
@@ -104,7 +103,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   vision_H /= white_share;
   vision_b /= white_share;
   estimate->relative.T_a_b = relativePose(previous, newest);
-  estimate->relative.covariance = J * solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance * J.transpose();
+  estimate->relative.covariance = propagated(J, solveLastTwo(vision_H + rest_H, vision_b + rest_b, 0).covariance);
 
   estimate->relative.covariance.topLeftCorner<3, 3>() += commonErrors(estimate->relative.T_a_b.translation());
 
@@ -113,7 +112,7 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   vision.step *= newton_gain;
   estimate->vision.T_a_b =
       relativePose(retract(previous, vision.step.head<6>()), retract(newest, vision.step.tail<6>()));
-  estimate->vision.covariance = J * vision.covariance * J.transpose();
+  estimate->vision.covariance = propagated(J, vision.covariance);
 
   // Scale: from the images and the rotation factors, without velocity and without what is known from before.
   BundleAdjustment rotations;
@@ -124,13 +123,13 @@ void computeMarginals(BundleAdjustment* bundle, const BundleOptions& solve_optio
   Eigen::VectorXd none_b, rotation_b;
   rotations.linearize(&none_H, &none_b, &rotation_H, &rotation_b, options);
   const LastTwo seen = solveLastTwo(scale_H + rotation_H, rotation_b, 6);
-  const Eigen::Matrix3d translation_covariance = (J * seen.covariance * J.transpose()).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d translation_covariance = propagated(J.topRows<3>(), seen.covariance);
   const double distance = estimate->relative.T_a_b.translation().norm();
   const Eigen::Vector3d direction =
       distance > 0.0 ? Eigen::Vector3d(estimate->relative.T_a_b.translation() / distance) : Eigen::Vector3d::UnitX();
   const double along = direction.dot(translation_covariance * direction);
   // The unseen direction is that of the cameras' motion, which the lever arm sets apart from the body's.
-  const Eigen::Vector3d spread = translation_covariance.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Eigen::Vector3d spread = symmetricEigenvalues(translation_covariance);
   const double least = std::sqrt(std::max(0.0, 0.5 * (spread[0] + spread[1])));
   const double most = std::sqrt(std::max(0.0, spread[2]));
   const double noise = most < kEvenlySeen * least ? most : least;
@@ -147,8 +146,8 @@ bool contradicted(const MotionSummary& prior, const RelativeMotion& vision) {
   const Eigen::Matrix3d& R = prior.T_a_b.linear();
   const Eigen::Vector3d difference = logSO3(vision.T_a_b.linear() * R.transpose());
   const Eigen::Matrix3d covariance =
-      R * prior.rotation_covariance * R.transpose() + vision.covariance.bottomRightCorner<3, 3>();
-  return difference.dot(covariance.ldlt().solve(difference)) > kContradiction * kContradiction;
+      propagated(R, prior.rotation_covariance) + vision.covariance.bottomRightCorner<3, 3>();
+  return squaredMahalanobis(difference, covariance) > kContradiction * kContradiction;
 }
 
 PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& solve_options) {
@@ -162,7 +161,7 @@ PosePrior marginalizeFirstPose(BundleAdjustment* bundle, const BundleOptions& so
   const int rest = static_cast<int>(H.rows()) - 6;
   Matrix6d first = H.topLeftCorner<6, 6>();
   first.diagonal().array() += kWeakestInformation;
-  const Eigen::MatrixXd gain = first.ldlt().solve(H.topRightCorner(6, rest));  // first^-1 H_01
+  const Eigen::MatrixXd gain = symmetricSolve(first, H.topRightCorner(6, rest));  // first^-1 H_01
 
   PosePrior prior;
   for (int i = 1; i < static_cast<int>(bundle->poses.size()); ++i) {

@@ -5,9 +5,10 @@
 #include <sensor_msgs/point_cloud2_iterator.h>
 #include <tf2_eigen/tf2_eigen.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "multicam_egomotion/geometry/covariance.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -63,10 +64,7 @@ boost::array<double, 36> toRosCovariance(const Matrix6d& covariance) {
   Matrix6d result = Matrix6d::Identity() * kLargestVariance;
   if (covariance.allFinite()) {
     // No direction below the smallest variance: positive definite; then the scale of each axis is limited.
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(0.5 * (covariance + covariance.transpose()));
-    const double floor = std::max(kSmallestVariance, kSmallestShare * eigen.eigenvalues().maxCoeff());
-    const Eigen::Matrix<double, 6, 1> values = eigen.eigenvalues().cwiseMax(floor);
-    result = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    result = withEigenvaluesRaised(covariance, kSmallestVariance, kSmallestShare);
     const Eigen::Matrix<double, 6, 1> scale = (kLargestVariance / result.diagonal().array()).min(1.0).sqrt();
     result = scale.asDiagonal() * result * scale.asDiagonal();
     result = (0.5 * (result + result.transpose())).eval();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bernstein_roots.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -13,10 +14,18 @@ constexpr int kDegree = 8;
 struct Search {
   std::array<double, kDegree + 1> c;  // of s, or of 1 / s where `reciprocal`
   std::array<double, kDegree> slope;
-  double noise;
+  std::array<double, kDegree + 1> noise;  // of c
+  double largest_noise;                   // of the value at |x| = 1
   bool reciprocal;
   int subdivisions;
   ProjectiveRoots* roots;
+
+  // Error of the values, and of the Bernstein coefficients, where |x| ≤ `largest`.
+  double noiseWithin(double largest) const {
+    double value = noise[kDegree];
+    for (int k = kDegree; k-- > 0;) value = value * largest + noise[k];
+    return value;
+  }
 
   void add(double x, bool touching) {
     if (roots->count < static_cast<int>(roots->roots.size())) roots->roots[roots->count++] = {x, reciprocal, touching};
@@ -55,7 +64,8 @@ struct Variations {
   int certain, possible;
 };
 
-Variations variations(const double* b, double noise) {
+// On [lo, hi].
+Variations variations(const Search& search, const double* b, double lo, double hi) {
   Variations found = {0, 0};
   double smallest = std::abs(b[0]);
   for (int i = 1; i <= kDegree; ++i) {
@@ -63,6 +73,8 @@ Variations variations(const double* b, double noise) {
     smallest = std::min(smallest, std::abs(b[i]));
   }
   found.possible = found.certain;
+  if (smallest > search.largest_noise) return found;
+  const double noise = search.noiseWithin(std::max(std::abs(lo), std::abs(hi)));
   if (smallest <= noise) {
     // Each one within the noise takes the sign opposite to the one before; those ahead of all others alternate too.
     int first = 0;
@@ -81,7 +93,7 @@ Variations variations(const double* b, double noise) {
 void isolate(Search& search, const double* b, double lo, double hi) {
   constexpr double kNarrowest = 1e-7;
   constexpr int kMaxSubdivisions = 300;  // a polynomial of rounding alone must not take for ever
-  const Variations found = variations(b, search.noise);
+  const Variations found = variations(search, b, lo, hi);
   if (found.possible == 0) return;
   if (found.certain == 1 && found.possible == 1) {
     search.add(rootInBracket(search, lo, hi, b[0], b[kDegree]), false);
@@ -114,14 +126,10 @@ void isolate(Search& search, const double* b, double lo, double hi) {
   isolate(search, right, middle, hi);
 }
 
-// Bernstein coefficients on [0, 1] of the polynomial with coefficients c[k] · sign^k.
-void bernstein(const double* c, double sign, double* b) {
+// Bernstein coefficients on [0, 1] of four polynomials side by side.
+void toBernstein(std::array<Eigen::Array4d, kDegree + 1>& b) {
   constexpr double kInverseBinomial[kDegree + 1] = {1, 1. / 8, 1. / 28, 1. / 56, 1. / 70, 1. / 56, 1. / 28, 1. / 8, 1};
-  double factor = 1;
-  for (int k = 0; k <= kDegree; ++k) {
-    b[k] = factor * c[k] * kInverseBinomial[k];
-    factor *= sign;
-  }
+  for (int k = 0; k <= kDegree; ++k) b[k] *= kInverseBinomial[k];
   for (int order = 1; order <= kDegree; ++order) {
     for (int k = kDegree; k >= order; --k) b[k] += b[k - 1];
   }
@@ -129,26 +137,37 @@ void bernstein(const double* c, double sign, double* b) {
 
 }  // namespace
 
-ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree, double noise) {
+ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree,
+                                     const std::array<double, 9>& noise) {
   ProjectiveRoots roots;
-  double c[2][kDegree + 1] = {}, at_plus = 0, at_minus = 0;
+  double c[2][kDegree + 1] = {}, at_plus = 0, at_minus = 0, largest_noise = 0;
   for (int k = 0; k <= degree; ++k) {
+    largest_noise += noise[k];
     c[0][k] = coefficients[k];
     c[1][degree - k] = coefficients[k];
     at_plus += coefficients[k];
     at_minus += k & 1 ? -coefficients[k] : coefficients[k];
   }
+  // Of c[0](x), c[0](-x), c[1](x) and c[1](-x).
+  std::array<Eigen::Array4d, kDegree + 1> b;
+  for (int k = 0; k <= kDegree; ++k) {
+    const double sign = k & 1 ? -1 : 1;
+    b[k] = Eigen::Array4d(c[0][k], sign * c[0][k], c[1][k], sign * c[1][k]);
+  }
+  toBernstein(b);
   for (int chart = 0; chart < 2; ++chart) {
-    Search search = {{}, {}, noise, chart == 1, 0, &roots};
+    Search search = {{}, {}, {}, largest_noise, chart == 1, 0, &roots};
     std::copy(c[chart], c[chart] + kDegree + 1, search.c.begin());
+    for (int k = 0; k <= degree; ++k) search.noise[k] = noise[chart == 0 ? k : degree - k];
     for (int k = 0; k < kDegree; ++k) search.slope[k] = (k + 1) * search.c[k + 1];
     double positive[kDegree + 1], negative[kDegree + 1];
-    bernstein(c[chart], 1.0, positive);
-    bernstein(c[chart], -1.0, negative);
+    for (int k = 0; k <= kDegree; ++k) {
+      positive[k] = b[k][2 * chart];
+      negative[kDegree - k] = b[k][2 * chart + 1];
+    }
     // At s = ±1 the first chart's values hold for both, so that a root there is found once: s^degree is ±1.
     positive[kDegree] = at_plus;
-    negative[kDegree] = chart == 1 && degree & 1 ? -at_minus : at_minus;
-    std::reverse(negative, negative + kDegree + 1);
+    negative[0] = chart == 1 && degree & 1 ? -at_minus : at_minus;
     isolate(search, negative, -1, 0);
     isolate(search, positive, 0, 1);
   }

@@ -19,9 +19,10 @@ struct ProjectiveRoots {
 };
 
 /// Real roots of a polynomial of nominal degree 1 to 8 (constant term first; a zero leading coefficient is a root at
-/// infinity, higher coefficients must be zero), `noise` being the error of its coefficients. Coefficients must be
+/// infinity, higher coefficients must be zero), `noise` being the errors of its coefficients. Coefficients must be
 /// finite. In s and in 1 / s, [-1, 1] is halved until the Bernstein coefficients of the polynomial change sign at most
 /// once (Descartes' rule); the root is then found by Newton steps inside the bracket.
-ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree, double noise);
+ProjectiveRoots realRootsByBernstein(const std::array<double, 9>& coefficients, int degree,
+                                     const std::array<double, 9>& noise);
 
 }  // namespace multicam_egomotion

@@ -3,22 +3,20 @@
 #include "epipolar_poses.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <cmath>
+
+#include "four_point_translation.h"
 
 namespace multicam_egomotion {
 namespace {
 
 constexpr int kMaxSolutions = 6;
-constexpr double kSettled = 1e-9;          // [rad], of the last Newton step
-constexpr double kLargestStep = 0.02;      // [rad]
-constexpr double kSameRoot = 1e-9;         // [rad]; roots this near are one to rounding
-constexpr double kNeighbour = 0.01;        // [rad]
-constexpr double kRankTolerance = 1e-8;    // volume of three rows below which all four are looked at
-constexpr double kScaleTolerance = 1e-7;   // sine of the rotation, or relative singular value, without scale
-constexpr double kNoParallax = 1e-7;       // [rad]
-constexpr double kSmallestNormal = 1e-14;  // relative singular value of the normals without which t is not finite
-constexpr double kFarthest = 1e6;          // |t| / size beyond which all rows are looked at
+constexpr double kSettled = 1e-9;        // [rad], of the last Newton step
+constexpr double kLargestStep = 0.02;    // [rad]
+constexpr double kSameRoot = 1e-9;       // [rad]; roots this near are one to rounding
+constexpr double kNeighbour = 0.01;      // [rad]
+constexpr double kRankTolerance = 1e-8;  // volume of three rows below which all four are looked at
+constexpr double kFarthest = 1e6;        // |t| / size beyond which all rows are looked at
 
 HalfAngle turned(const HalfAngle& half, double angle) {
   return normalized(half.a - 0.5 * angle * half.b, half.b + 0.5 * angle * half.a);
@@ -46,7 +44,9 @@ bool refine(const EpipolarSystem& system, const AngleEstimates& estimates, int i
     if (!(std::abs(step) < kLargestStep)) return false;
     half = turned(half, -step);
     if (std::abs(step) < kSettled) {
-      at = evaluate(system, half);
+      // So short a step moves the rows along their slopes.
+      at.rows -= step * at.row_slopes;
+      if (system.identity_root) at.factor = 2 * half.b;
       return true;
     }
   }
@@ -94,8 +94,7 @@ int positiveDepths(const EpipolarSystem& system, double c, double s, const Eigen
   return static_cast<int>((depth1 > kTolerance).count() + (depth2 > kTolerance).count());
 }
 
-// Translation where three rows do not give it: least squares of all. Scale is not observable where constants and
-// normals together have rank 2. Returns false where not even the direction is determined.
+// Translation where three rows do not give it: of all that have parallax.
 bool translationFromAllRows(const Eigen::Matrix4d& all_rows, Eigen::Vector3d& t, bool& scale_observable) {
   Eigen::Matrix4d rows = Eigen::Matrix4d::Zero();
   int used = 0;
@@ -103,24 +102,7 @@ bool translationFromAllRows(const Eigen::Matrix4d& all_rows, Eigen::Vector3d& t,
     const double parallax = all_rows.row(i).head<3>().norm();
     if (parallax > kNoParallax) rows.row(used++) = all_rows.row(i) / parallax;
   }
-  if (used == 0) {
-    t.setZero();
-    scale_observable = false;
-    return true;
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix4d> all(rows);
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 4, 3>, Eigen::FullPivHouseholderQRPreconditioner> normals(
-      rows.leftCols<3>(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d sigma = normals.singularValues();
-  if (!(sigma(1) > kScaleTolerance * sigma(0))) return false;
-  scale_observable = all.singularValues()(2) > kScaleTolerance * all.singularValues()(0);
-  if (!scale_observable) {
-    t = normals.matrixV().col(2);
-    return true;
-  }
-  if (!(sigma(2) > kSmallestNormal * sigma(0))) return false;
-  t = -normals.solve(rows.col(3));
-  return t.allFinite();
+  return leastSquaresTranslation(rows, t, scale_observable);
 }
 
 }  // namespace
@@ -183,7 +165,7 @@ void posesAtRoots(const EpipolarSystem& system, AngleEstimates& estimates, const
     if (count == kMaxSolutions) return;
     roots[count++] = root;
     RelativePose& pose = candidates.poses[candidates.count];
-    candidates.count += poseFromRows(system, root, at.rows, at.cofactors, at.factor, options, pose);
+    candidates.count += poseFromRows(system, root, at.rows, cofactorMatrix(at.rows), at.factor, options, pose);
   };
 
   SystemAtAngle at;
@@ -207,9 +189,10 @@ void posesAtRoots(const EpipolarSystem& system, AngleEstimates& estimates, const
       HalfAngle half = pair[k];
       if (found == 2 && refine(system, both, k, half, at)) {
         addRoot(half, at);
-      } else {
-        addRoot(pair[k], evaluate(system, pair[k]));
+        continue;
       }
+      at = evaluate(system, pair[k]);
+      if (std::abs(at.value) <= roundingError(system, at)) addRoot(pair[k], at);
     }
   }
 }

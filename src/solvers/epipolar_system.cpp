@@ -8,6 +8,9 @@
 #include <limits>
 #include <utility>
 
+#include "four_point_translation.h"
+#include "sample_checks.h"
+
 namespace multicam_egomotion {
 namespace {
 
@@ -15,17 +18,12 @@ struct Lines {
   LaneVectors x, q;  // directions, moments
 };
 
-constexpr double kNoParallax = 1e-7;    // [rad]
 constexpr double kVanishing = 1e-14;    // determinant of rows of order 1
 constexpr double kSameTilt = 1e-12;     // [rad]
 constexpr double kMeeting = 1e-13;      // constraint of two rays through one point, relative to their moments
 constexpr double kSmallestNorm = 1e-6;  // of a ray's direction
 constexpr double kLargestNorm = 1e100;
 constexpr double kLargestMoment = 1e100;  // [m]
-
-bool samePair(const RayCorrespondence& a, const RayCorrespondence& b) {
-  return a.camera1 == b.camera1 && a.camera2 == b.camera2;
-}
 
 // The correspondence that is not of the camera pair of the three others; -1: there is none.
 int oddOne(const std::array<RayCorrespondence, 4>& sample) {
@@ -105,18 +103,6 @@ Eigen::Matrix3d normalCofactors(const Eigen::Matrix4d& rows) {
 }
 
 }  // namespace
-
-bool isRotation(const Eigen::Matrix3d& R) {
-  return std::abs(R.squaredNorm() - 3.0) < 1e-6 && std::abs(R.determinant() - 1.0) < 1e-6;
-}
-
-bool centersCover(const std::array<RayCorrespondence, 4>& sample, const SolverOptions& options) {
-  if (options.camera_centers == nullptr) return true;
-  return std::all_of(sample.begin(), sample.end(), [&](const RayCorrespondence& ray) {
-    return ray.camera1 >= 0 && ray.camera1 < options.camera_count && ray.camera2 >= 0 &&
-           ray.camera2 < options.camera_count;
-  });
-}
 
 bool onePair(const std::array<RayCorrespondence, 4>& sample) {
   return samePair(sample[0], sample[1]) && samePair(sample[0], sample[2]) && samePair(sample[0], sample[3]);
@@ -227,29 +213,29 @@ SystemAtAngle evaluate(const EpipolarSystem& system, const HalfAngle& half) {
   const double c = a * a - b * b, s = 2 * a * b;
   SystemAtAngle at;
   at.rows = c * system.c + (s * system.s + system.k);
-  Eigen::Matrix4d slopes = c * system.s - s * system.c;
+  at.row_slopes = c * system.s - s * system.c;
   at.factor = 1;
   if (system.identity_root) {
     // sinθ B - (1 - cosθ) A = 2 b (a B - b A)
     at.factor = 2 * b;
     at.rows.col(3) = a * system.s.col(3) - b * system.c.col(3);
-    slopes.col(3) = -0.5 * (b * system.s.col(3) + a * system.c.col(3));
+    at.row_slopes.col(3) = -0.5 * (b * system.s.col(3) + a * system.c.col(3));
   }
-  at.cofactors = cofactorMatrix(at.rows);
   if (system.three_and_one) {
     const Eigen::Matrix3d cofactors = normalCofactors(at.rows);
     at.value = at.rows.row(0).head<3>().dot(cofactors.col(0));
-    at.slope = slopes.topLeftCorner<3, 3>().cwiseProduct(cofactors.transpose()).sum();
+    at.slope = at.row_slopes.topLeftCorner<3, 3>().cwiseProduct(cofactors.transpose()).sum();
   } else {
-    at.value = at.rows.col(0).dot(at.cofactors.col(0));
-    at.slope = slopes.cwiseProduct(at.cofactors).sum();
+    const Eigen::Matrix4d cofactors = cofactorMatrix(at.rows);
+    at.value = at.rows.col(0).dot(cofactors.col(0));
+    at.slope = at.row_slopes.cwiseProduct(cofactors).sum();
   }
   return at;
 }
 
 double roundingError(const EpipolarSystem& system, const SystemAtAngle& at) {
   const double cofactors =
-      system.three_and_one ? normalCofactors(at.rows).cwiseAbs().sum() : at.cofactors.cwiseAbs().sum();
+      system.three_and_one ? normalCofactors(at.rows).cwiseAbs().sum() : cofactorMatrix(at.rows).cwiseAbs().sum();
   return 4 * std::numeric_limits<double>::epsilon() * cofactors;
 }
 

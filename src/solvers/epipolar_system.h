@@ -39,11 +39,6 @@ struct EpipolarSystem {
   LaneVectors p1, p2;  ///< points of the rays from which depths count [m]
 };
 
-bool isRotation(const Eigen::Matrix3d& R);
-
-/// The cameras of the sample have centres, where centres are given.
-bool centersCover(const std::array<RayCorrespondence, 4>& sample, const SolverOptions& options);
-
 bool onePair(const std::array<RayCorrespondence, 4>& sample);
 
 /// The vertical of frame 1 in the aligned frame 2 is z to rounding: the frames differ in yaw alone, which is free.
@@ -56,7 +51,7 @@ SolverStatus buildEpipolarSystem(const std::array<RayCorrespondence, 4>& sample,
 /// M at one angle. Of a system with the identity root the last column is divided by `factor` = 2 sin(θ / 2).
 struct SystemAtAngle {
   Eigen::Matrix4d rows;
-  Eigen::Matrix4d cofactors;
+  Eigen::Matrix4d row_slopes;  ///< derivative of `rows` by θ
   double factor;
   double value;  ///< zero at a solution: det of `rows`, or of the normals of rows 0 to 2 (three_and_one)
   double slope;  ///< derivative of `value` by θ

@@ -11,6 +11,8 @@
 
 #include "five_point_martyushev_axes.h"
 #include "five_point_martyushev_system.h"
+#include "four_point_translation.h"
+#include "sample_checks.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -21,16 +23,10 @@ constexpr double kSmallAngle = 0.01;          // [rad]; below it the limit of sm
 constexpr double kNearHalfTurn = 1e-4;        // [rad]
 constexpr double kLimitAlone = 1e-4;          // angle over the second singular value
 constexpr double kSameAxis = 1e-8;            // [rad]
-constexpr double kScaleTolerance = 1e-7;      // relative singular value without scale
-constexpr double kNoParallax = 1e-7;          // [rad]
 constexpr double kMeetInCenter = 1e-8;        // relative to rig and translation
 constexpr double kLargestTranslation = 1e14;  // relative to the rig
 
 using Sample = std::array<RayCorrespondence, 5>;
-
-bool samePair(const RayCorrespondence& a, const RayCorrespondence& b) {
-  return a.camera1 == b.camera1 && a.camera2 == b.camera2;
-}
 
 /// Where the rays of three correspondences of one camera pair meet at t1 and at t2.
 struct TripleCenters {
@@ -130,12 +126,8 @@ bool validInput(const Sample& sample, const AnglePrior& prior, const SolverOptio
       const double direction = side->direction.squaredNorm(), moment = side->moment.squaredNorm();
       if (!(direction > 1 / kLargest && direction < kLargest && moment < kLargest)) return false;
     }
-    if (options.camera_centers != nullptr && (ray.camera1 < 0 || ray.camera1 >= options.camera_count ||
-                                              ray.camera2 < 0 || ray.camera2 >= options.camera_count)) {
-      return false;
-    }
   }
-  return true;
+  return centersCover(sample, options);
 }
 
 /// Solutions found so far, as axes and as poses.

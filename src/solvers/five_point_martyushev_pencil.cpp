@@ -14,6 +14,8 @@ namespace {
 constexpr double kDependent = 1e-10;
 
 namespace build_instructions {
+#include "francis_eigenvalues.inc"
+//
 #include "five_point_martyushev_eigen.inc"
 //
 #include "five_point_martyushev_pencil.inc"
@@ -23,6 +25,8 @@ namespace build_instructions {
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
 namespace avx2_instructions {
+#include "francis_eigenvalues.inc"
+//
 #include "five_point_martyushev_eigen.inc"
 //
 #include "five_point_martyushev_pencil.inc"

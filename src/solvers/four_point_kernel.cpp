@@ -12,6 +12,7 @@
 
 #include "four_point_translation.h"
 #include "instruction_sets.h"
+#include "sample_checks.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -20,6 +21,8 @@ namespace {
 
 constexpr double kRankTolerance = 1e-6;  // below this F is looked at again with all four rows
 constexpr double kVanishing = 1e-14;     // rounding of a determinant of rows of order 1
+constexpr double kFarDepth = 1e3;        // of the origin, relative to 1 m and t, beyond which the pose is corrected
+constexpr double kParallel = 2e-4;       // sine between the rows, or less, below which it is
 constexpr double kLargestSquare = 1e280;
 constexpr int kBlock = 8;  // samples solved together
 
@@ -54,25 +57,6 @@ namespace avx2_instructions {
 #pragma GCC pop_options
 #endif
 
-bool isRotation(const Eigen::Matrix3d& R) {
-  return std::abs(R.squaredNorm() - 3.0) < 1e-6 && std::abs(R.col(0).cross(R.col(1)).dot(R.col(2)) - 1.0) < 1e-6;
-}
-
-bool samePair(const RayCorrespondence& a, const RayCorrespondence& b) {
-  return a.camera1 == b.camera1 && a.camera2 == b.camera2;
-}
-
-bool camerasHaveCenters(const std::array<RayCorrespondence, 4>& sample, const SolverOptions& options) {
-  if (options.camera_centers == nullptr) return true;
-  for (const RayCorrespondence& ray : sample) {
-    if (ray.camera1 < 0 || ray.camera1 >= options.camera_count || ray.camera2 < 0 ||
-        ray.camera2 >= options.camera_count) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // The correspondence whose pair the three others share goes last; the origin is one of the three.
 ClassifiedSample classify(const std::array<RayCorrespondence, 4>& sample) {
   ClassifiedSample result = {{&sample[0], &sample[1], &sample[2], &sample[3]}, false, false};
@@ -102,7 +86,7 @@ void solveFourPointAboutZ(const std::array<RayCorrespondence, 4>* samples, int c
       classified[i] = classify(sample);
       candidates[first + i].count = 0;
       candidates[first + i].status =
-          valid && camerasHaveCenters(sample, options) ? SolverStatus::kOk : SolverStatus::kInvalidInput;
+          valid && centersCover(sample, options) ? SolverStatus::kOk : SolverStatus::kInvalidInput;
     }
 #if MULTICAM_EGOMOTION_DISPATCH_AVX2
     if (processorHasAvx2()) {

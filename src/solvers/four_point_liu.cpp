@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "epipolar_poses.h"
 #include "epipolar_system.h"
 #include "instruction_sets.h"
 #include "quartic_roots.h"
+#include "sample_checks.h"
 
 #pragma GCC diagnostic ignored "-Wpsabi"
 

@@ -8,7 +8,7 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kDouble = 1e-10;    // relative discriminant that may be a double root's
+constexpr double kDouble = 1e-8;     // relative discriminant that may be a double root's
 constexpr double kSmallEnds = 1e-4;  // of the first and last coefficient, relative to the largest
 constexpr double kInfinity = 1e-12;  // of 1 / x, relative to the other roots
 

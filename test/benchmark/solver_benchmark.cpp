@@ -67,6 +67,56 @@ void axis(benchmark::State& state, SampleKind kind) {
   solveAll(state, kind, [](const SimulatedSample& s) { return solveFourPointAxis(s.rays, s.axis); });
 }
 
+// Eight samples of one motion at a time; counter time_per_sample [s].
+template <typename Solve>
+void solveBatches(benchmark::State& state, SampleKind kind, const Solve& solve) {
+  constexpr int kBatch = 8;
+  struct Batch {
+    std::array<std::array<RayCorrespondence, 4>, kBatch> samples;
+    SimulatedSample motion;
+  };
+  SampleSimulator simulator(1);
+  std::vector<Batch> batches(kProblems / kBatch);
+  for (Batch& batch : batches) {
+    batch.motion = simulator.sample(kind, Motion::kRandom, 0, 10 * M_PI / 180);
+    SimulatedSample sample = batch.motion;
+    for (auto& rays : batch.samples) {
+      rays = sample.rays;
+      simulator.observe(kind, sample);
+    }
+  }
+  std::array<PoseCandidates<6>, kBatch> found;
+  double failures = 0;
+  for (const Batch& batch : batches) {
+    solve(batch.samples.data(), kBatch, batch.motion, found.data());
+    for (const auto& poses : found) {
+      failures += std::none_of(poses.begin(), poses.end(),
+                               [&](const RelativePose& pose) { return rotationError(pose.R, batch.motion.R) < 1e-6; });
+    }
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    solve(batches[i].samples.data(), kBatch, batches[i].motion, found.data());
+    benchmark::DoNotOptimize(found);
+    i = (i + 1) % batches.size();
+  }
+  state.counters["failures"] = failures / kProblems;
+  using benchmark::Counter;
+  state.counters["time_per_sample"] = Counter(kBatch, Counter::kIsIterationInvariantRate | Counter::kInvert);
+}
+
+void verticalBatch(benchmark::State& state, SampleKind kind) {
+  solveBatches(state, kind, [](const auto* samples, int count, const SimulatedSample& motion, auto* found) {
+    solveFourPointVertical(samples, count, motion.vertical, {}, found);
+  });
+}
+
+void axisBatch(benchmark::State& state, SampleKind kind) {
+  solveBatches(state, kind, [](const auto* samples, int count, const SimulatedSample& motion, auto* found) {
+    solveFourPointAxis(samples, count, motion.axis, {}, found);
+  });
+}
+
 void lee(benchmark::State& state, SampleKind kind) {
   solveAll(state, kind, [](const SimulatedSample& s) { return solveFourPointLee(s.rays, s.vertical); });
 }
@@ -135,8 +185,13 @@ struct SampleEntry {
   SampleKind kind;
 };
 
-constexpr SolverEntry kSolvers[] = {
-    {"4pt-vertical", vertical}, {"4pt-axis", axis}, {"4pt-lee", lee}, {"4pt-sweeney", sweeney}, {"4pt-liu", liu}};
+constexpr SolverEntry kSolvers[] = {{"4pt-vertical", vertical},
+                                    {"4pt-vertical-batch", verticalBatch},
+                                    {"4pt-axis", axis},
+                                    {"4pt-axis-batch", axisBatch},
+                                    {"4pt-lee", lee},
+                                    {"4pt-sweeney", sweeney},
+                                    {"4pt-liu", liu}};
 
 constexpr SampleEntry kSamples[] = {{"intra_2_2", SampleKind::kIntra22},
                                     {"intra_3_1", SampleKind::kIntra31},

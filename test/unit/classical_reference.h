@@ -19,6 +19,7 @@ namespace multicam_egomotion {
 /// plainest method: the determinant as a polynomial, its roots between the roots of its derivative, by bisection.
 struct ReferenceAngles {
   std::vector<double> angles;  ///< R = R_aligned_body2ᵀ Rz(angle) R_aligned_body1 [rad]
+  std::vector<double> slopes;  ///< of the determinant of rows of order 1 at these angles, absolute
   bool decided = true;         ///< false: whether two roots are real is a matter of the rounding of the input
 };
 
@@ -120,11 +121,26 @@ inline RealMatrix3 aboutZ(Real c, Real s, Real z) {
   return R;
 }
 
+/// |d/dφ| at tan φ = numerator / denominator of the polynomial made homogeneous in (sin φ, cos φ).
+inline double slopeAt(const RealPolynomial& p, const std::array<Real, 2>& root) {
+  const int degree = static_cast<int>(p.size()) - 1;
+  const Real length = std::hypot(root[0], root[1]), s = root[0] / length, c = root[1] / length;
+  Real slope = 0;
+  for (int k = 0; k <= degree; ++k) {
+    if (k > 0) slope += k * p[k] * std::pow(s, k - 1) * std::pow(c, degree - k + 1);
+    if (k < degree) slope -= (degree - k) * p[k] * std::pow(s, k + 1) * std::pow(c, degree - k - 1);
+  }
+  return static_cast<double>(std::abs(slope));
+}
+
 /// Leaves out the root nearest zero: R = I of intra-camera samples.
-inline void leaveOutIdentity(std::vector<double>& angles) {
+inline void leaveOutIdentity(ReferenceAngles& reference) {
+  std::vector<double>& angles = reference.angles;
   if (angles.empty()) return;
-  angles.erase(
-      std::min_element(angles.begin(), angles.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  const auto identity =
+      std::min_element(angles.begin(), angles.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  reference.slopes.erase(reference.slopes.begin() + (identity - angles.begin()));
+  angles.erase(identity);
 }
 
 constexpr Real kUndecided = 1e-14L;  // extremum of a determinant of rows of order 1 that may be zero
@@ -143,10 +159,10 @@ inline ReferenceAngles referenceAngles(const std::array<RayCorrespondence, 4>& r
   p.erase(p.begin(), p.begin() + 2);
   ReferenceAngles reference;
   for (const auto& root : projectiveRoots(p, kUndecided, reference.decided)) {
-    reference.angles.push_back(static_cast<double>(2 * std::atan2(root[0], root[1])));
+    reference.angles.push_back(std::remainder(static_cast<double>(2 * std::atan2(root[0], root[1])), 2 * M_PI));
+    reference.slopes.push_back(0.5 * slopeAt(p, root));
   }
-  for (double& angle : reference.angles) angle = std::remainder(angle, 2 * M_PI);
-  if (identity && !three_and_one) leaveOutIdentity(reference.angles);
+  if (identity && !three_and_one) leaveOutIdentity(reference);
   return reference;
 }
 
@@ -159,12 +175,13 @@ inline ReferenceAngles referenceLiuAngles(const std::array<RayCorrespondence, 4>
   const std::vector<RealMatrix4> linear = {classicalRows(rays, aligned, aboutZ(c, s, 1)),
                                            classicalRows(rays, aligned, aboutZ(-s, c, 0))};
   ReferenceAngles reference;
-  std::vector<double> relative;
-  for (const auto& root : projectiveRoots(determinantOf(linear, 4), kUndecided, reference.decided)) {
-    relative.push_back(std::atan(static_cast<double>(root[0] / root[1])));
+  const RealPolynomial p = determinantOf(linear, 4);
+  for (const auto& root : projectiveRoots(p, kUndecided, reference.decided)) {
+    reference.angles.push_back(std::atan(static_cast<double>(root[0] / root[1])));
+    reference.slopes.push_back(slopeAt(p, root));
   }
-  if (identity) leaveOutIdentity(relative);
-  for (double angle : relative) reference.angles.push_back(std::remainder(angle + static_cast<double>(yaw), 2 * M_PI));
+  if (identity) leaveOutIdentity(reference);
+  for (double& angle : reference.angles) angle = std::remainder(angle + static_cast<double>(yaw), 2 * M_PI);
   return reference;
 }
 

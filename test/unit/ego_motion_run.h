@@ -65,11 +65,6 @@ inline std::vector<EgoMotionResult> ofFrames(const std::vector<EgoMotionResult>&
   return frames;
 }
 
-inline bool positiveDefinite(const Matrix6d& covariance) {
-  if (!covariance.allFinite() || (covariance - covariance.transpose()).norm() > 1e-9 * covariance.norm()) return false;
-  return Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).eigenvalues()[0] > 0.0;
-}
-
 template <class Value>
 Value medianOf(std::vector<Value> values) {
   if (values.empty()) return Value();

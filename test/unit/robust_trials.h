@@ -12,6 +12,7 @@
 #include "multicam_egomotion/estimation/inlier_weights.h"
 #include "multicam_egomotion/estimation/minimal_solvers.h"
 #include "multicam_egomotion/estimation/robust_estimator.h"
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "solver_samples.h"
 
@@ -125,7 +126,7 @@ inline double normalizedSquare(const Eigen::Matrix3d& R, const Eigen::Vector3d& 
                                const Eigen::Matrix<double, 6, 6>& covariance, const RobustTrial& trial) {
   Eigen::Matrix<double, 6, 1> d;
   d << trial.t - t, logSO3(trial.R * R.transpose());
-  return d.dot(covariance.llt().solve(d));
+  return squaredMahalanobis(d, covariance);
 }
 
 /// The same refinement started at the truth on the true inliers.

@@ -4,6 +4,7 @@
 
 import contextlib
 import io
+import os
 import pathlib
 import sys
 import tempfile
@@ -17,7 +18,15 @@ import numpy as np  # noqa: E402
 import rotations  # noqa: E402
 from trajectory_io import NS, Trajectory  # noqa: E402
 
+DATA = pathlib.Path(os.environ.get("MULTICAM_EGOMOTION_DATA", PACKAGE.parent / "shared" / "data"))
 EPOCH_NS = 1_400_000_000_123_456_789
+
+
+def real_data(folder):
+    """The path of a folder of real recordings, or a skip that names it."""
+    if not (DATA / folder).is_dir():
+        raise unittest.SkipTest(f"real data folder {folder} not found (MULTICAM_EGOMOTION_DATA)")
+    return DATA / folder
 
 
 def run(main, *arguments):

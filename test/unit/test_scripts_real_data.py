@@ -5,14 +5,12 @@
 They look for MULTICAM_EGOMOTION_DATA or ../shared/data beside the package and skip, by name, where it is missing.
 """
 
-import os
-import pathlib
 import unittest
 
 import numpy as np
 import rosbag
 
-from scripts_test_case import PACKAGE, run
+from scripts_test_case import real_data, run
 from test_scripts_converters import ConverterTest
 
 import euroc_to_bag
@@ -20,15 +18,6 @@ import kitti_odometry
 import kitti_to_bag
 from smoothing_spline import GRAVITY
 from trajectory_io import read_kitti, read_tum
-
-DATA = pathlib.Path(os.environ.get("MULTICAM_EGOMOTION_DATA", PACKAGE.parent / "shared" / "data"))
-
-
-def real_data(folder):
-    """The path of a folder of real recordings, or a skip that names it."""
-    if not (DATA / folder).is_dir():
-        raise unittest.SkipTest(f"real data folder {folder} not found (MULTICAM_EGOMOTION_DATA)")
-    return DATA / folder
 
 
 class RealDataTest(ConverterTest):

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
 #include "multicam_egomotion/odometry/window.h"
@@ -139,7 +140,7 @@ inline WindowRun runWindow(const Scenario& scenario, const WindowRunOptions& opt
     const Eigen::Isometry3d& T = estimate.relative.T_a_b;
     const Matrix6d& covariance = estimate.relative.covariance;
     const Eigen::Vector3d rotation = logSO3(T_true.linear() * T.linear().transpose());
-    run.rotation.add(rotation.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(rotation)), 3);
+    run.rotation.add(squaredMahalanobis(rotation, covariance.bottomRightCorner<3, 3>()), 3);
     ++run.states[estimate.scale_state];
     const double distance = T_true.translation().norm();
     if (distance > 0.005) ++run.moving_states[estimate.scale_state];
@@ -152,7 +153,7 @@ inline WindowRun runWindow(const Scenario& scenario, const WindowRunOptions& opt
       const Eigen::Vector2d off = tangent.transpose() * T_true.translation() / distance;
       const Eigen::Matrix2d off_covariance =
           tangent.transpose() * covariance.topLeftCorner<3, 3>() * tangent / (length * length);
-      run.direction.add(off.dot(off_covariance.ldlt().solve(off)), 2);
+      run.direction.add(squaredMahalanobis(off, off_covariance), 2);
       direction_errors.push_back(std::atan2(off.norm(), t.dot(T_true.translation()) / distance));
       if (estimate.scale_state == ScaleState::kObservable) {
         const double along = t.dot(covariance.topLeftCorner<3, 3>() * t);

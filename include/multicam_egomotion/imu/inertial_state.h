@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/imu/imu_buffer.h"
 #include "multicam_egomotion/imu/imu_calibration.h"
 #include "multicam_egomotion/imu/imu_sample.h"
@@ -176,10 +177,9 @@ class InertialState {
   void correctVertical(const ForceWindow& window, double acceleration_sigma);
   bool correctMotion(const Eigen::Vector3d& residual, const Eigen::Matrix<double, 3, kSize>& H,
                      const Eigen::Matrix3d& covariance, double speed_residual);
-  template <int Rows>
-  bool correct(const Eigen::Matrix<double, Rows, 1>& residual, const Eigen::Matrix<double, Rows, kSize>& H,
-               const Eigen::Matrix<double, Rows, Rows>& noise, CorrectionCounts* counts, const ErrorState& widening,
-               bool learn_accelerometer_bias = true);
+  /// residual = H error + noise, with two or three rows.
+  bool correct(const VectorRef& residual, const MatrixRef& H, const MatrixRef& noise, CorrectionCounts* counts,
+               const ErrorState& widening, bool learn_accelerometer_bias = true);
   /// Rotation to apply for the attitude error θ; turns the covariance of that block into the new axes.
   Eigen::Matrix3d turnError(const Eigen::Vector3d& theta, int block);
   void inject(const ErrorState& error);

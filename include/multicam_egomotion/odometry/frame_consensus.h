@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "multicam_egomotion/estimation/robust_estimator.h"
+#include "multicam_egomotion/odometry/track_matches.h"
 #include "multicam_egomotion/odometry/window.h"
-#include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
-
-/// One frame's features with the camera poses of that moment (stamp differences applied, contract 2).
-struct PosedFrame {
-  TrackedFrame frame;
-  std::vector<Eigen::Isometry3d> T_body_cam;
-};
 
 /// The motion between two frames that most of the tracks agree on.
 struct FrameConsensus {

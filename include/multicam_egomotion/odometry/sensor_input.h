@@ -53,6 +53,7 @@ class SensorInput {
   bool wentBack(const CameraImage& image);
   void forgetOtherTime();
   std::int64_t dataTime(std::int64_t now_ns);
+  std::optional<std::string> apart() const;
 
   const CameraRig rig_;
   bool use_imu_;

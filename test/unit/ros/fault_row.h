@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -27,9 +28,14 @@ struct FaultRow {
     least.emplace_back(key, at_least);
     return *this;
   }
-  /// The summary of /diagnostics contains this while the faults work.
-  FaultRow& says(const std::string& text) {
-    summaries.push_back(text);
+  /// The summary of /diagnostics contains this while the faults work, first within so many seconds.
+  FaultRow& says(const std::string& text, double within_s = std::numeric_limits<double>::infinity()) {
+    summaries.emplace_back(text, within_s);
+    return *this;
+  }
+  /// What is said needs a rotation of 30 deg first, and is not checkable until then.
+  FaultRow& onceTurned() {
+    once_turned = true;
     return *this;
   }
   /// At least this share of the recording's frames has a pose.
@@ -58,6 +64,12 @@ struct FaultRow {
     drift_allowance_deg = allowance_deg;
     return *this;
   }
+  /// The error of the position grows by no more than this from just before the faults on, and the truth is always
+  /// within 3 sigma.
+  FaultRow& gainsAtMost(double position_m) {
+    most_gained_m = position_m;
+    return *this;
+  }
   /// The data are wrong throughout: the fault is to be named, the accuracy is not judged.
   FaultRow& onlyNamed() {
     accurate = false;
@@ -77,12 +89,14 @@ struct FaultRow {
   std::vector<std::string> faults;
   double begin_s = 0.0, end_s = 1.5;
   std::vector<std::pair<std::string, double>> least;
-  std::vector<std::string> summaries;
+  std::vector<std::pair<std::string, double>> summaries;
+  bool once_turned = false;
   double pose_share = 1.0;
   double stamp_shift_s = 0.0;
   bool stamps_jump = false;
   int odom_epochs = 1;
   bool accurate = true;
+  double most_gained_m = std::numeric_limits<double>::infinity();
   double drift_factor = 1.5, drift_allowance_m = 0.005, drift_allowance_deg = 0.1;
   std::vector<std::pair<std::string, std::string>> parameters;
   std::string refusal;

@@ -20,12 +20,18 @@
 
 namespace multicam_egomotion {
 
+/// What /diagnostics would have said with a result.
+struct Said {
+  std::int64_t stamp_ns;  ///< of the result; 0: at the end, and there was none
+  std::string summary, gyroscope;
+};
+
 /// What came out of one bag: results, and what /diagnostics would have said.
 struct FaultRun {
   std::vector<EgoMotionResult> results;
-  std::map<std::string, std::string> diagnostics;               ///< values at the end
-  std::vector<std::pair<std::int64_t, std::string>> summaries;  ///< one a result, with its stamp
-  std::string refusal;                                          ///< the error, where nothing ran
+  std::map<std::string, std::string> diagnostics;  ///< values at the end
+  std::vector<Said> said;                          ///< with each result
+  std::string refusal;                             ///< the error, where nothing ran
 };
 
 inline FaultRun runBag(const std::string& path, const Parameters& parameters) {
@@ -45,8 +51,8 @@ inline FaultRun runBag(const std::string& path, const Parameters& parameters) {
       health.undecodable_images = report.undecodable_images;
       diagnostic_updater::DiagnosticStatusWrapper status;
       describe(health, status);
-      run.summaries.emplace_back(health.result ? health.result->stamp_ns : 0, status.message);
       for (const auto& value : status.values) run.diagnostics[value.key] = value.value;
+      run.said.push_back({health.result ? health.result->stamp_ns : 0, status.message, run.diagnostics["gyroscope"]});
     };
     replay.play(
         [&](const EgoMotionResult& result, const ros::Time&) {
