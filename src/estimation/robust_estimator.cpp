@@ -26,7 +26,7 @@ constexpr double kDamping = 1e-3;
 constexpr double kProbeSigmas = 2.0;
 // A baseline that is short beside the longest may point either way, and local optimization does not lead from one to
 // the other: then the next best minimal models are optimized as well.
-constexpr double kShortBaseline = 0.25;
+constexpr double kDoubtfulBaseline = 0.25;
 constexpr std::size_t kRunnersUp = 3;
 
 struct Model {
@@ -102,7 +102,7 @@ bool hasShortBaseline(const CorrespondenceSet& set, const Model& model) {
     least = std::min(least, length);
     most = std::max(most, length);
   }
-  return least < kShortBaseline * most;
+  return least < kDoubtfulBaseline * most;
 }
 
 // Samples needed to draw one free of outliers with the probability wanted.
