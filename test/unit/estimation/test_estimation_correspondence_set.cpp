@@ -135,7 +135,7 @@ TEST(CorrespondenceSet, APointBehindTheCamerasIsAnOutlier) {
   EXPECT_GT(outliers, 0.8 * set.size());
 }
 
-TEST(CorrespondenceSet, NearnessIsTheInverseDistance) {
+TEST(CorrespondenceSet, NearnessIsTheInverseDistanceAndLeverageIsPerBaseline) {
   const CorrespondenceScene scene = makeCorrespondenceScene(stereoShape(), kRotation, kTranslation, 60, 0.0, 0.0, 7);
   const CorrespondenceSet set = scene.set();
   CorrespondenceSet::Residuals residuals;
@@ -151,7 +151,8 @@ TEST(CorrespondenceSet, NearnessIsTheInverseDistance) {
     // depth2 d = depth1 a + b, so depth2 (a × d) = a × b.
     const double depth = a.cross(b).dot(a.cross(d)) / a.cross(d).squaredNorm();
     EXPECT_NEAR(residuals.nearness[i], unit / depth, 1e-6 * unit / depth);
-    EXPECT_NEAR(residuals.squared_parallaxes[i], a.cross(d).squaredNorm(), 1e-12);
+    const double leverage = a.cross(d).squaredNorm() * unit * unit / b.squaredNorm();
+    EXPECT_NEAR(residuals.leverages[i], leverage, 1e-12 + 1e-9 * leverage);
   }
 }
 
