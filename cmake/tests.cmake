@@ -92,7 +92,7 @@ set_target_properties(test_solvers PROPERTIES UNITY_BUILD OFF)  # each file name
 if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
   add_unit_tests(geometry multicam_egomotion_simulator opencv_calib3d)
   foreach(layer imu tracking odometry simulator)
-    add_unit_tests(${layer} multicam_egomotion_simulator)
+    add_unit_tests(${layer} multicam_egomotion_simulator ${YAML_CPP_LIBRARIES})
   endforeach()
 endif()
 
