@@ -5,7 +5,6 @@ endif()
 file(GLOB python_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/python/*.cpp)
 add_library(multicam_egomotion_python MODULE ${python_sources})
 target_link_libraries(multicam_egomotion_python PRIVATE multicam_egomotion_solvers pybind11::module)
-precompile_headers(python multicam_egomotion_python <Eigen/Geometry> <pybind11/eigen.h> <pybind11/stl.h>)
 pybind11_extension(multicam_egomotion_python)
 set_target_properties(multicam_egomotion_python PROPERTIES OUTPUT_NAME multicam_egomotion_solvers
   CXX_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python INSTALL_RPATH "$ORIGIN/../..")

@@ -12,8 +12,7 @@ set_source_files_properties(test/unit/ros/test_corrupt_bag.cpp PROPERTIES
   COMPILE_DEFINITIONS CORRUPT_BAG="$<TARGET_FILE:corrupt_bag>")
 target_link_libraries(test_ros_layer multicam_egomotion_bag_runner multicam_egomotion_fault_injection GTest::GTest
   GTest::Main)
-target_compile_options(test_ros_layer PRIVATE -O1)  # compiles faster, and what counts is in the libraries
-precompile_headers(ros_tests test_ros_layer ${ros_headers} <gtest/gtest.h>)
+precompile_headers(ros_libraries test_ros_layer)
 set_target_properties(test_ros_layer PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 add_test(NAME test_ros_layer COMMAND test_ros_layer WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 add_dependencies(test_ros_layer corrupt_bag)
@@ -23,13 +22,12 @@ add_dependencies(tests test_ros_layer)
 add_executable(test_fault_table EXCLUDE_FROM_ALL test/unit/ros/test_fault_table.cpp)
 target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_egomotion_fault_injection
   multicam_egomotion_simulator GTest::GTest GTest::Main)
-target_compile_options(test_fault_table PRIVATE -O1)
-precompile_headers(ros_tests test_fault_table)
+precompile_headers(ros_libraries test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 foreach(recording simulated recorded)
   add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 600 COST 50 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
 endforeach()
 add_dependencies(tests test_fault_table)
 
@@ -37,8 +35,7 @@ add_dependencies(tests test_fault_table)
 foreach(name test_nodelet_manager test_replay test_services)
   add_executable(${name} EXCLUDE_FROM_ALL test/rostest/${name}.cpp)
   target_link_libraries(${name} multicam_egomotion_ros GTest::GTest)
-  target_compile_options(${name} PRIVATE -O1)
-  precompile_headers(ros_tests ${name})
+  precompile_headers(ros_libraries ${name})
   add_dependencies(tests ${name})
 endforeach()
 add_dependencies(tests multicam_egomotion_nodelet ${ros_tools})
@@ -50,13 +47,14 @@ file(MAKE_DIRECTORY ${recordings})
 function(add_ros_test name file)
   add_test(NAME rostest_${name} COMMAND ${run_rostest} ${name} ${CMAKE_CURRENT_SOURCE_DIR}/test/rostest/${file}
     ${CMAKE_BINARY_DIR}/test/rostest/${name} ${ARGN})
-  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RESOURCE_LOCK ros)  # one at a time; they mostly wait
+  # One at a time; they mostly wait, so they start first and run beside the others.
+  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RESOURCE_LOCK ros COST 100)
 endfunction()
 
 # A simulated recording, made when the tests run.
 set(simulated ${recordings}/handheld_stereo)
-add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simulated}.bag --duration 6)
-set_tests_properties(recording_simulated PROPERTIES FIXTURES_SETUP simulated TIMEOUT 300)
+add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simulated}.bag --duration 4)
+set_tests_properties(recording_simulated PROPERTIES FIXTURES_SETUP simulated TIMEOUT 300 COST 200)
 add_ros_test(replay_simulated replay.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml max_error:=0.05)
 add_ros_test(topics_only topics_only.test bag:=${simulated}.bag)
 add_ros_test(bad_configuration bad_configuration.test rig:=${simulated}.rig.yaml)
@@ -82,6 +80,6 @@ add_ros_test(replay_euroc replay.test --needs ${euroc_bag}.bag bag:=${euroc_bag}
 if(EXISTS ${euroc})
   add_test(NAME recording_euroc
     COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/scripts/euroc_to_bag.py ${euroc} ${euroc_bag}.bag)
-  set_tests_properties(recording_euroc PROPERTIES FIXTURES_SETUP euroc TIMEOUT 120)
+  set_tests_properties(recording_euroc PROPERTIES FIXTURES_SETUP euroc TIMEOUT 120 COST 200)
   set_tests_properties(rostest_replay_euroc PROPERTIES FIXTURES_REQUIRED euroc)
 endif()

@@ -1,4 +1,4 @@
-# Unit tests (test/unit/test_*.cpp, one executable each) and style checks. Target `tests` builds them all,
+# Unit tests (test/unit/LAYER/test_*.cpp, one executable a layer) and style checks. Target `tests` builds them all,
 # `benchmarks` the benchmarks.
 enable_testing()
 find_package(GTest REQUIRED)
@@ -9,25 +9,35 @@ if(NOT TARGET tests)
   add_custom_target(tests)
 endif()
 
-# One ctest entry a test: a skipped one is named, and hides no failure of its neighbours. Suites that share a costly set-up
-# run as one entry.
-function(add_unit_test name)
-  set(source ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${name}.cpp)
-  add_executable(${name} EXCLUDE_FROM_ALL ${source})
-  target_link_libraries(${name} ${ARGN} GTest::GTest GTest::Main)
+function(add_test_executable name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/test/unit)
+  target_link_libraries(${name} ${ARG_LIBRARIES} GTest::GTest GTest::Main)
   target_compile_options(${name} PRIVATE -O1)  # compiles faster, and what counts is in the libraries
   precompile_headers(unit_tests ${name} <algorithm> <cmath> <iostream> <map> <random> <string> <vector> <Eigen/Cholesky>
     <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/SVD> <gtest/gtest.h>)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-  file(STRINGS ${source} shared_set_up REGEX "SetUpTestSuite")
-  if(shared_set_up)
-    add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
-  else()
-    gtest_discover_tests(${name} TEST_PREFIX ${name}. WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
-      DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
-  endif()
   add_dependencies(tests ${name})
+endfunction()
+
+# One ctest entry a test: a skipped one is named, and hides no failure of its neighbours. A suite that shares a costly
+# set-up has an executable of its own, and is one entry.
+function(add_unit_tests layer)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/${layer}/test_*.cpp)
+  foreach(source ${sources})
+    file(STRINGS ${source} shared_set_up REGEX "SetUpTestSuite")
+    if(shared_set_up)
+      list(REMOVE_ITEM sources ${source})
+      get_filename_component(name ${source} NAME_WE)
+      add_test_executable(${name} SOURCES ${source} LIBRARIES ${ARGN})
+      add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+      set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+    endif()
+  endforeach()
+  add_test_executable(test_${layer} SOURCES ${sources} LIBRARIES ${ARGN})
+  gtest_discover_tests(test_${layer} TEST_PREFIX test_${layer}. WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+    DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
 endfunction()
 
 function(add_style_check name)
@@ -74,21 +84,16 @@ add_style_check(clang_format check_format.sh)
 add_style_check(catkin_lint check_catkin_lint.sh)
 add_style_check(layers check_layers.py)
 
-# Tests of geometry, solvers and estimation need Eigen only; the others may use the whole core and the simulator.
-file(GLOB solver_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_solver_*.cpp
-  ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_estimation_*.cpp)
-file(GLOB unit_tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/test_*.cpp)
-list(REMOVE_ITEM unit_tests ${solver_tests})
-foreach(file ${solver_tests})
-  get_filename_component(name ${file} NAME_WE)
-  add_unit_test(${name} multicam_egomotion_solvers)
+# Tests of solvers and estimation need Eigen only; the others may use the whole core and the simulator.
+foreach(layer solvers estimation)
+  add_unit_tests(${layer} multicam_egomotion_solvers)
 endforeach()
+set_target_properties(test_solvers PROPERTIES UNITY_BUILD OFF)  # each file names its solvers alike
 if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
-  foreach(file ${unit_tests})
-    get_filename_component(name ${file} NAME_WE)
-    add_unit_test(${name} multicam_egomotion_simulator)
+  add_unit_tests(geometry multicam_egomotion_simulator opencv_calib3d)
+  foreach(layer imu tracking odometry simulator)
+    add_unit_tests(${layer} multicam_egomotion_simulator ${YAML_CPP_LIBRARIES})
   endforeach()
-  target_link_libraries(test_camera_model opencv_calib3d)
 endif()
 
 # Examples check what they show.

@@ -2,8 +2,6 @@
 layer_sources(paper_experiments_sources tools/paper_experiments)
 add_executable(paper_experiments src/tools/paper_experiments.cpp ${paper_experiments_sources})
 target_link_libraries(paper_experiments multicam_egomotion_simulator boost_program_options)
-precompile_headers(tools paper_experiments <algorithm> <cmath> <functional> <string> <thread> <vector> <Eigen/Geometry>
-  <opencv2/core.hpp>)
 
 if(MULTICAM_EGOMOTION_ROS)
   install(TARGETS paper_experiments RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -28,6 +28,9 @@ export ROS_HOME=$build/ros_home
 configure() {
   local directory=$1
   shift
+  if [[ -f $directory/CMakeCache.txt && ! -f $directory/build.ninja ]]; then  # of another generator
+    rm -rf "$directory"/{CMakeCache.txt,CMakeFiles}
+  fi
   cmake -S "$package" -B "$directory" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
     "-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_BASEDIR=$directory;ccache" "$@"
 }

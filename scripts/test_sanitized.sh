@@ -13,13 +13,9 @@ filter=(-E '^(style_|test_scripts)')
 if [[ ${1:-} == --all ]]; then
   shift
 else
-  long='accuracy|euroc|recorded|starts|simulator|ego_motion|gyroscope_check|window'
-  filter=(-E "^(style_|test_scripts|rostest_|recording_|test_[a-z_]*($long))")
-  targets=(test_fault_table test_ros_layer)
-  for source in "$package"/test/unit/test_*.cpp; do
-    name=$(basename "$source" .cpp)
-    [[ $name =~ $long ]] || targets+=("$name")
-  done
+  long='Accuracy|Recorded|Starts|Euroc|EgoMotion|SystematicDrift|GyroscopeCheck|Window|test_simulator|test_ego_motion'
+  filter=(-E "^(style_|test_scripts|test_egomotion_bag|rostest_|recording_|consumer_|install_|example_|python_)|$long")
+  targets=(test_{geometry,solvers,estimation,imu,tracking,odometry,fault_table,ros_layer})
   for source in "$package"/test/fuzz/{,ros/}*_fuzzer.cpp; do targets+=("$(basename "$source" .cpp)"); done
 fi
 

@@ -101,7 +101,7 @@ void CorrespondenceSet::evaluate(const Eigen::Matrix3d& R, const Eigen::Vector3d
   constexpr int kBlock = RayBlock<double>::kSize;
   residuals->errors.resize(entries_.size());
   residuals->nearness.resize(entries_.size());
-  residuals->squared_parallaxes.resize(entries_.size());
+  residuals->leverages.resize(entries_.size());
   double mean_baseline = 0.0;
   for (const CameraPair& pair : pairs_) mean_baseline += (R * pair.center1 + t - pair.center2).norm() / pairs_.size();
   std::vector<RayResidual> rays(index_at_.size());
@@ -115,7 +115,7 @@ void CorrespondenceSet::evaluate(const Eigen::Matrix3d& R, const Eigen::Vector3d
       const int i = index_at_[place];
       residuals->errors[i] = rays[place].error;
       residuals->nearness[i] = scale * rays[place].nearness;
-      residuals->squared_parallaxes[i] = rays[place].squared_parallax;
+      residuals->leverages[i] = scale * scale * rays[place].squared_parallax;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace multicam_egomotion {
 namespace {
@@ -15,9 +16,11 @@ constexpr double kSideBegin = 2.0, kSideEnd = 22.0;  // in limits
 constexpr double kUnseen = 0.01;                     // inliers expected at a distance at which no other is
 constexpr double kBent = 2.0;                        // outliers to which the pose may have been bent
 
+constexpr double kLeastProbability = 0.1;  // of an inlier
+
 constexpr double kMeanDistrust = 0.25;
-constexpr double kFirstParallax = 0.1, kLeastParallax = 1e-8;  // squared [rad^2]
-constexpr int kParallaxSteps = 5;
+constexpr double kFirstLeverage = 0.1, kLeastLeverage = 1e-8;  // [rad^2]
+constexpr int kLeverageSteps = 5;
 
 // Half octaves of the nearness; points without parallax are the farthest.
 int binOf(double nearness) {
@@ -25,14 +28,14 @@ int binOf(double nearness) {
   return std::min(std::max(std::ilogb(nearness * nearness) - kFarthest, 1), kBins);
 }
 
-// Squared parallax s at which the mean of p / (p + s) over squared parallaxes p is kMeanDistrust: a fixed point.
-double trustedParallax(const std::vector<double>& squared_parallaxes) {
-  double scale = kFirstParallax;
-  for (int i = 0; i < kParallaxSteps; ++i) {
+// Leverage s at which the mean of q / (q + s) over leverages q is kMeanDistrust: a fixed point.
+double trustedLeverage(const std::vector<double>& leverages) {
+  double scale = kFirstLeverage;
+  for (int i = 0; i < kLeverageSteps; ++i) {
     double sum = 0.0;
-    for (double p : squared_parallaxes) sum += p / (p + scale);
-    const double distrust = std::min(std::max(sum / std::max<std::size_t>(1, squared_parallaxes.size()), 1e-3), 0.9);
-    scale = std::max(scale * distrust / (1.0 - distrust) * (1.0 - kMeanDistrust) / kMeanDistrust, kLeastParallax);
+    for (double q : leverages) sum += q / (q + scale);
+    const double distrust = std::min(std::max(sum / std::max<std::size_t>(1, leverages.size()), 1e-3), 0.9);
+    scale = std::max(scale * distrust / (1.0 - distrust) * (1.0 - kMeanDistrust) / kMeanDistrust, kLeastLeverage);
   }
   return scale;
 }
@@ -48,29 +51,31 @@ void weighInliers(const CorrespondenceSet::Residuals& residuals, double sigma, d
     if (errors[i] < core) ++core_counts[binOf(residuals.nearness[i])];
     if (errors[i] > kSideBegin * limit && errors[i] < kSideEnd * limit) ++side_counts[binOf(residuals.nearness[i])];
   }
-  // Squared error up to which the inliers are denser than the outliers.
-  std::array<double, kBins + 1> largest{};
+  // Density of inliers without error over that of outliers.
+  std::array<double, kBins + 1> odds{};
   for (int bin = 1; bin <= kBins; ++bin) {
     const auto window = [bin](const std::array<int, kBins + 2>& counts) {
       return counts[bin - 1] + counts[bin] + counts[bin + 1];
     };
     const double outliers = window(side_counts) / ((kSideEnd - kSideBegin) * limit);  // a pixel
     const double others = std::max(window(core_counts) - 1.0 - kBent - outliers * core, kUnseen);
-    const double odds = others * std::sqrt(2.0 / M_PI) / (sigma * std::max(outliers, 1e-6));
-    largest[bin] = odds > 1.0 ? std::min(2.0 * sigma * sigma * std::log(odds), limit * limit) : 0.0;
-    if (outliers == 0.0) largest[bin] = limit * limit;
+    odds[bin] =
+        outliers > 0.0 ? others * std::sqrt(2.0 / M_PI) / (sigma * outliers) : std::numeric_limits<double>::infinity();
   }
   weights->assign(errors.size(), 0.0);
-  std::vector<double> parallaxes;
-  parallaxes.reserve(errors.size());
+  std::vector<double> leverages;
+  leverages.reserve(errors.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!(errors[i] * errors[i] < largest[binOf(residuals.nearness[i])])) continue;
-    (*weights)[i] = 1.0;
-    parallaxes.push_back(residuals.squared_parallaxes[i]);
+    if (!(errors[i] < limit)) continue;
+    const double square = errors[i] / sigma * (errors[i] / sigma);
+    const double probability = 1.0 / (1.0 + std::exp(0.5 * square) / odds[binOf(residuals.nearness[i])]);
+    if (probability < kLeastProbability) continue;
+    (*weights)[i] = probability;
+    leverages.push_back(residuals.leverages[i]);
   }
-  const double scale = trustedParallax(parallaxes);
+  const double scale = trustedLeverage(leverages);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    (*weights)[i] *= scale / (scale + residuals.squared_parallaxes[i]);
+    (*weights)[i] *= scale / (scale + residuals.leverages[i]);
   }
 }
 

@@ -24,6 +24,10 @@ constexpr double kDamping = 1e-3;
 // A model is not scored further when its loss over the probe exceeds that of the best by more standard deviations than
 // chance would give a model as good; the spread of a sum of n losses in [0, 1] is at most sqrt(n) / 2.
 constexpr double kProbeSigmas = 2.0;
+// A baseline that is short beside the longest may point either way, and local optimization does not lead from one to
+// the other: then the next best minimal models are optimized as well.
+constexpr double kDoubtfulBaseline = 0.25;
+constexpr std::size_t kRunnersUp = 3;
 
 struct Model {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -48,7 +52,7 @@ class Consensus {
     return difference.dot(prior.information * difference) > options_.max_rotation_sigmas * options_.max_rotation_sigmas;
   }
 
-  /// Scores a minimal model; true when it is the best of them.
+  /// Scores a minimal model, unless its probe is hopeless; true when it is the best of them.
   bool improves(Model* model) {
     const double probe = set_.sumOfLosses(model->R, model->t, loss_, Part::kProbe);
     if (probe > best_probe_ + probe_margin_) return false;
@@ -90,6 +94,16 @@ class Consensus {
   const double probe_margin_;
   double best_minimal_ = std::numeric_limits<double>::infinity(), best_probe_ = best_minimal_;
 };
+
+bool hasShortBaseline(const CorrespondenceSet& set, const Model& model) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const CorrespondenceSet::CameraPair& pair : set.cameraPairs()) {
+    const double length = (model.R * pair.center1 + model.t - pair.center2).norm();
+    least = std::min(least, length);
+    most = std::max(most, length);
+  }
+  return least < kDoubtfulBaseline * most;
+}
 
 // Samples needed to draw one free of outliers with the probability wanted.
 double samplesNeeded(double inlier_share, int sample_size, double success_probability) {
@@ -138,6 +152,7 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
   Model best;
   std::vector<int> sample(sample_size);
   std::vector<RelativePose> models;
+  std::vector<Model> runners_up;
   CorrespondenceSet::Residuals residuals;
   double needed = options.max_samples;
   while (result.samples < options.max_samples && (result.samples < options.min_samples || result.samples < needed)) {
@@ -148,7 +163,10 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
       if (consensus.contradictsPrior(candidate.R)) continue;
       ++result.models;
       Model model{candidate.R, candidate.t};
-      if (!consensus.improves(&model)) continue;
+      if (!consensus.improves(&model)) {
+        if (std::isfinite(model.score)) runners_up.push_back(model);
+        continue;
+      }
       if (options.local_optimization) {
         model = consensus.optimizeLocally(model);
         ++result.refinements;
@@ -162,6 +180,16 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
     }
   }
   if (!std::isfinite(best.score)) return result;
+  if (options.local_optimization && hasShortBaseline(set, best)) {
+    const auto end = runners_up.begin() + std::min(kRunnersUp, runners_up.size());
+    std::partial_sort(runners_up.begin(), end, runners_up.end(),
+                      [](const Model& a, const Model& b) { return a.score < b.score; });
+    for (auto runner_up = runners_up.begin(); runner_up != end; ++runner_up) {
+      const Model model = consensus.optimizeLocally(*runner_up);
+      ++result.refinements;
+      if (model.score < best.score) best = model;
+    }
+  }
   result.score = best.score;
   result.R = best.R;
   result.t = best.t;

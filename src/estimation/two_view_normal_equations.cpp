@@ -3,6 +3,7 @@
 #include "multicam_egomotion/estimation/two_view_normal_equations.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "multicam_egomotion/geometry/so3.h"
@@ -19,16 +20,34 @@ Eigen::Matrix<double, 6, 1> TwoViewNormalEquations::step(double lambda) const {
   return -damped.llt().solve(g);
 }
 
+std::vector<double> baselineTrust(const std::vector<RaySegment>& segments, const Eigen::Matrix3d& R,
+                                  const Eigen::Vector3d& t, const Eigen::Matrix<double, 6, 6>& covariance) {
+  std::vector<double> trust;
+  for (const RaySegment& segment : segments) {
+    const Eigen::Vector3d center = R * segment.center1;
+    Eigen::Matrix<double, 3, 6> D;
+    D << Eigen::Matrix3d::Identity(), -skew(center);
+    const double square = (center + t - segment.center2).squaredNorm();
+    const double variance = (D * covariance * D.transpose()).trace();
+    trust.push_back(square / (square + variance));
+  }
+  const double best = trust.empty() ? 0.0 : *std::max_element(trust.begin(), trust.end());
+  for (double& one : trust) one = best > 0.0 ? one / best : 1.0;
+  return trust;
+}
+
 template <class T>
 TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_only, const TwoViewNoise& noise,
-                                        const MotionPriors& priors, const Eigen::Matrix3d& R,
-                                        const Eigen::Vector3d& t) {
+                                        const MotionPriors& priors, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                                        const std::vector<double>& shares) {
   TwoViewNormalEquations equations;
   equations.H.setZero();
   equations.information.setZero();
   equations.g.setZero();
+  equations.shares.assign(rays.segments.size(), 0.0);
   double loss = 0.0;
-  for (const RaySegment& segment : rays.segments) {
+  for (std::size_t k = 0; k < rays.segments.size(); ++k) {
+    const RaySegment& segment = rays.segments[k];
     const Eigen::Vector3d center = R * segment.center1;
     const Eigen::Vector3d baseline = center + t - segment.center2;
     const double length = baseline.norm();
@@ -45,13 +64,13 @@ TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_onl
     // d baseline = d t + d theta × center.
     Eigen::Matrix3d H_bb, H_ab, H_aa;
     for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
         const auto at = [&](int row, int column) {
           return row < column ? sums.H[column * (column + 1) / 2 + row] : sums.H[row * (row + 1) / 2 + column];
         };
-        H_bb(i, k) = at(i, k) / (length * length);
-        H_ab(i, k) = at(3 + i, k) / length;
-        H_aa(i, k) = at(3 + i, 3 + k);
+        H_bb(i, j) = at(i, j) / (length * length);
+        H_ab(i, j) = at(3 + i, j) / length;
+        H_aa(i, j) = at(3 + i, 3 + j);
       }
     }
     const Eigen::Vector3d g_b = Eigen::Map<const Eigen::Vector3d>(sums.g) / length;
@@ -62,7 +81,9 @@ TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_onl
     H_pair << H_bb, H_ab.transpose(), H_ab, H_aa;
     equations.H += A.transpose() * H_pair * A;
     const double feigned = 2.0 * noise.pixel_sigma * noise.pixel_sigma * sums.parallax_noise;
-    const double share = sums.parallax > feigned ? 1.0 - feigned / sums.parallax : 0.0;
+    const double measured = sums.parallax > feigned ? 1.0 - feigned / sums.parallax : 0.0;
+    const double share = shares.empty() ? measured : shares[k];
+    equations.shares[k] = share;
     H_pair.topLeftCorner<3, 3>() *= share;
     H_pair.topRightCorner<3, 3>() *= std::sqrt(share);
     H_pair.bottomLeftCorner<3, 3>() *= std::sqrt(share);
@@ -83,8 +104,10 @@ TwoViewNormalEquations linearizeTwoView(const RayBlocks<T>& rays, bool probe_onl
 }
 
 template TwoViewNormalEquations linearizeTwoView(const RayBlocks<float>&, bool, const TwoViewNoise&,
-                                                 const MotionPriors&, const Eigen::Matrix3d&, const Eigen::Vector3d&);
+                                                 const MotionPriors&, const Eigen::Matrix3d&, const Eigen::Vector3d&,
+                                                 const std::vector<double>&);
 template TwoViewNormalEquations linearizeTwoView(const RayBlocks<double>&, bool, const TwoViewNoise&,
-                                                 const MotionPriors&, const Eigen::Matrix3d&, const Eigen::Vector3d&);
+                                                 const MotionPriors&, const Eigen::Matrix3d&, const Eigen::Vector3d&,
+                                                 const std::vector<double>&);
 
 }  // namespace multicam_egomotion

@@ -25,6 +25,7 @@ constexpr double kSteadySigma = 0.02;
 constexpr int kAdaptiveIterations = 8;
 constexpr double kSmallStep = 1e-4;  // squared length in sigmas of a step that no longer matters
 constexpr double kLargestLambda = 1e6;
+constexpr double kShortBaseline = 0.25;  // of the longest, below which its length is doubted
 
 TwoViewNoise noiseOf(double sigma, const TwoViewRefinementOptions& options, double max_error_px) {
   const double limit = std::min(kLimitSigmas * sigma, max_error_px);
@@ -50,16 +51,42 @@ double measuredSigma(const TwoViewNormalEquations& equations, const RobustLoss& 
   return std::max(sigmaOfTruncated(square, loss.core, 0.5 * max_error_px), kLeastSigma);
 }
 
+// By segment, of the longest.
+std::vector<double> relativeSquaredBaselines(const std::vector<RaySegment>& segments, const Eigen::Matrix3d& R,
+                                             const Eigen::Vector3d& t) {
+  std::vector<double> squares;
+  for (const RaySegment& s : segments) squares.push_back((R * s.center1 + t - s.center2).squaredNorm());
+  const double longest = squares.empty() ? 0.0 : *std::max_element(squares.begin(), squares.end());
+  for (double& square : squares) square = longest > 0.0 ? square / longest : 1.0;
+  return squares;
+}
+
 // The noise of an observation is the same whatever its weight w: with A = sum of w J J^T and B = sum of w^2 J J^T, the
-// covariance is A^-1 B A^-1.
-Matrix6d covarianceOf(const TwoViewNormalEquations& equations, RayBlocks<double> rays, const TwoViewNoise& noise,
+// covariance is A^-1 B A^-1. A baseline that came out too short by chance would seem to tell all of the pose, so its
+// length is what the long ones leave it.
+Matrix6d covarianceOf(const TwoViewNormalEquations& equations, const RayBlocks<double>& rays, const TwoViewNoise& noise,
                       const MotionPriors& priors, const TwoViewEstimate& estimate) {
-  for (RayBlock<double>& block : rays.blocks) {
+  RayBlocks<double> squared = rays;
+  for (RayBlock<double>& block : squared.blocks) {
     for (double& weight : block.weight) weight *= weight;
   }
-  const Matrix6d B = linearizeTwoView(rays, false, noise, priors, estimate.R, estimate.t).information;
-  const Matrix6d inverse = equations.information.llt().solve(Matrix6d::Identity());
-  return inverse * B * inverse;
+  const auto information = [&](const RayBlocks<double>& of, const std::vector<double>& shares) {
+    return linearizeTwoView(of, false, noise, priors, estimate.R, estimate.t, shares).information;
+  };
+  const auto covariance = [&](const Matrix6d& A, const std::vector<double>& shares) {
+    const Matrix6d inverse = A.llt().solve(Matrix6d::Identity());
+    return Matrix6d(inverse * information(squared, shares) * inverse);
+  };
+  const std::vector<double> lengths = relativeSquaredBaselines(rays.segments, estimate.R, estimate.t);
+  const auto isLong = [](double length) { return length > kShortBaseline * kShortBaseline; };
+  if (std::all_of(lengths.begin(), lengths.end(), isLong)) return covariance(equations.information, equations.shares);
+  std::vector<double> shares = equations.shares;
+  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] *= isLong(lengths[k]);
+  const Matrix6d by_long = covariance(information(rays, shares), shares);
+  shares = equations.shares;
+  const std::vector<double> trust = baselineTrust(rays.segments, estimate.R, estimate.t, by_long);
+  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] *= trust[k];
+  return covariance(information(rays, shares), shares);
 }
 
 }  // namespace

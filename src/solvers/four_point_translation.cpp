@@ -14,26 +14,26 @@ namespace {
 constexpr double kLargestCorrection = 1e-7;  // [rad]
 constexpr double kSmallestNormal = 1e-14;    // relative singular value of the normals without which t is not finite
 
-// Of at most four rows and columns, without a heap; one type for all decompositions.
-using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
-
 }  // namespace
 
 bool leastSquaresTranslation(const Eigen::Matrix4d& rows, Eigen::Vector3d& t, bool& scale_observable) {
   t.setZero();
   scale_observable = false;
   if (rows.leftCols<3>().isZero(0)) return true;
-  const Eigen::JacobiSVD<SmallMatrix> all{SmallMatrix(rows)};
-  const Eigen::JacobiSVD<SmallMatrix> normals(rows.leftCols<3>(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Vector3d sigma = normals.singularValues();
+  Eigen::JacobiSVD<Eigen::Matrix4d> svd(rows);
+  const Eigen::Vector4d sigma_all = svd.singularValues();
+  Eigen::Matrix4d normals = rows;  // square, as the one type of all decompositions
+  normals.col(3).setZero();
+  svd.compute(normals, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector4d sigma = svd.singularValues();
   if (!(sigma(1) > kScaleTolerance * sigma(0))) return false;
-  scale_observable = all.singularValues()(2) > kScaleTolerance * all.singularValues()(0);
+  scale_observable = sigma_all(2) > kScaleTolerance * sigma_all(0);
   if (!scale_observable) {
-    t = normals.matrixV().col(2);
+    t = svd.matrixV().col(2).head<3>();
     return true;
   }
   if (!(sigma(2) > kSmallestNormal * sigma(0))) return false;
-  t = -normals.solve(rows.col(3));
+  t = -svd.solve(rows.col(3)).head<3>();
   return t.allFinite();
 }
 
@@ -72,7 +72,7 @@ double correctPose(const AlignedRays& rays, double c, double s, double* t) {
     residuals(i) = m.dot(apart);
     jacobian.row(i) << m.transpose(), turned.dot(apart) + m.dot(Eigen::Vector3d::UnitZ().cross(p1));
   }
-  Eigen::ColPivHouseholderQR<SmallMatrix> qr{SmallMatrix(jacobian)};
+  Eigen::ColPivHouseholderQR<Eigen::Matrix4d> qr(jacobian);
   qr.setThreshold(kWeak);
   const Eigen::Vector4d step = -qr.solve(residuals);
   if (!(std::abs(step(3)) < kLargestCorrection)) return 0;

@@ -11,6 +11,9 @@
 
 namespace multicam_egomotion {
 
+/// A motion with a bit of everything: rotation vector [rad] and translation [m] of T_f2_f1.
+inline const Eigen::Vector3d kRotation(0.02, -0.03, 0.08), kTranslation(-0.4, 0.1, 0.05);
+
 /// Two frames of a rig of bearing cameras with known motion T_f2_f1 = [R t].
 struct CorrespondenceScene {
   static constexpr double kFocalLength = 400.0;  ///< [px/rad]

@@ -52,9 +52,10 @@ class CorrespondenceSet {
 
   /// By index.
   struct Residuals {
-    std::vector<double> errors;              ///< absolute [px]; infinite for a point that would lie behind a camera
-    std::vector<double> nearness;            ///< inverse distance at t2, in inverse mean baselines of the camera pairs
-    std::vector<double> squared_parallaxes;  ///< squared sines of the angles between the bearings
+    std::vector<double> errors;     ///< absolute [px]; infinite for a point that would lie behind a camera
+    std::vector<double> nearness;   ///< inverse distance at t2, in inverse mean baselines of the camera pairs
+    std::vector<double> leverages;  ///< on the translation: squared sine of the angle between the bearings, over the
+                                    ///< square of the pair's baseline in mean baselines
   };
   /// Points lie behind a camera when their bearings turn the wrong way by more than `limit` [px].
   void evaluate(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double limit, Residuals* residuals) const;

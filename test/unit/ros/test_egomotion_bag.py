@@ -59,7 +59,10 @@ class EgoMotionBag(unittest.TestCase):
         randomness = random.Random(1)
         outputs = {"trajectory": self.path("out.tum"), "kitti": self.path("out.txt"), "report": self.path("out.json"),
                    "output_bag": self.path("out.bag")}
-        poses = 0
+        begin = time.monotonic()
+        subprocess.run(self.command(RECORDING + ".bag", **outputs), stdout=subprocess.DEVNULL, check=True, timeout=120)
+        whole_run = time.monotonic() - begin
+        poses, interrupted = 0, 0
         for number in range(SIGNALS):
             for path in outputs.values():
                 pathlib.Path(path).unlink(missing_ok=True)
@@ -67,7 +70,7 @@ class EgoMotionBag(unittest.TestCase):
                                        stderr=subprocess.PIPE, text=True)
             while process.poll() is None and not catches_sigterm(process.pid):
                 time.sleep(0.001)
-            time.sleep(randomness.uniform(0.0, 2.0))
+            time.sleep(randomness.uniform(0.0, 0.8 * whole_run))
             begin = time.monotonic()
             process.send_signal((signal.SIGINT, signal.SIGTERM)[number % 2])
             _, errors = process.communicate(timeout=20)
@@ -76,8 +79,8 @@ class EgoMotionBag(unittest.TestCase):
             starved = os.getloadavg()[0] > os.cpu_count()
             self.assertLess(seconds, 5.0 if starved else 1.0)
             report = json.loads(pathlib.Path(outputs["report"]).read_text())
-            self.assertTrue(report["interrupted"], "the run was over before the signal")
-            self.assertIn("interrupted", errors)
+            self.assertEqual(report["interrupted"], "interrupted" in errors, errors)
+            interrupted += report["interrupted"]  # on a machine whose load changes, a run may end before its signal
             trajectory = pathlib.Path(outputs["trajectory"]).read_text()
             self.assertEqual(trajectory.count("\n"), report["poses"])
             self.assertTrue(all(len(line.split()) == 8 for line in trajectory.splitlines()))
@@ -87,6 +90,7 @@ class EgoMotionBag(unittest.TestCase):
                 self.assertGreaterEqual(bag.get_message_count(topic_filters=["odometry"]), report["poses"])
             poses += report["poses"]
         self.assertGreater(poses, 0)
+        self.assertGreater(interrupted, SIGNALS / 2)
 
     def expect_failure(self, path, reason, limit=None, **outputs):
         def limit_files():

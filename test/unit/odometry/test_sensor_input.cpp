@@ -11,7 +11,7 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr std::int64_t kMs = 1000000;
-constexpr std::int64_t kStart = 1000000 * kMs;
+constexpr std::int64_t kFirstStamp = 1000000 * kMs;
 
 CameraRig twoCameras() {
   std::vector<RigCamera> cameras;
@@ -27,7 +27,7 @@ class SensorInputTest : public ::testing::Test {
  protected:
   bool imu(int stamp_ms) {
     ImuSample sample;
-    sample.stamp_ns = kStart + stamp_ms * kMs;
+    sample.stamp_ns = kFirstStamp + stamp_ms * kMs;
     sample.linear_acceleration.z() = 9.81 + 1e-4 * (stamp_ms % 70);
     now_ms_ = std::max(now_ms_, stamp_ms);
     const bool jumped = input_.addImu(sample);
@@ -37,7 +37,7 @@ class SensorInputTest : public ::testing::Test {
   bool image(int camera, int stamp_ms) {
     now_ms_ = std::max(now_ms_, stamp_ms);
     const cv::Mat grey(24, 32, CV_8UC1, cv::Scalar(100));
-    const bool jumped = input_.addImage({camera, kStart + stamp_ms * kMs, grey}, kStart + now_ms_ * kMs);
+    const bool jumped = input_.addImage({camera, kFirstStamp + stamp_ms * kMs, grey}, kFirstStamp + now_ms_ * kMs);
     advance();
     return jumped;
   }
@@ -68,7 +68,7 @@ class SensorInputTest : public ::testing::Test {
 
  private:
   void advance() {
-    input_.advance(kStart + now_ms_ * kMs);
+    input_.advance(kFirstStamp + now_ms_ * kMs);
     while (const auto set = input_.next()) sets_.push_back(static_cast<int>(set->images.size()));
   }
 };

@@ -29,8 +29,8 @@ RelativeMotion seen(const Eigen::Isometry3d& T, double position_sigma, double ro
   return vision;
 }
 
-constexpr std::int64_t kPeriod = 50000000;
-const Eigen::Isometry3d kStep = motion({0.05, 0.01, -0.02}, {0.01, 0.02, 0.03});
+constexpr std::int64_t kFramePeriod = 50000000;
+const Eigen::Isometry3d kMotion = motion({0.05, 0.01, -0.02}, {0.01, 0.02, 0.03});
 
 TEST(MotionSummary, PoseCovarianceTurnsTheRotationIntoTheAxesOfTheFirst) {
   MotionSummary summary;
@@ -50,7 +50,7 @@ TEST(ConstantRateMotion, StartsWithNothingKnown) {
   EXPECT_FALSE(model.initialized());
   ASSERT_TRUE(model.initialize(1000));
   EXPECT_TRUE(model.initialized());
-  model.advanceTo(1000 + kPeriod);
+  model.advanceTo(1000 + kFramePeriod);
   const MotionSummary summary = model.motionSinceFrame();
   EXPECT_LT((summary.T_a_b.matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-12);
   EXPECT_NEAR(std::sqrt(summary.rotation_covariance(0, 0)), 0.0524, 1e-9);
@@ -63,18 +63,18 @@ TEST(ConstantRateMotion, GoesOnAsBefore) {
   std::int64_t now = 1000;
   model.initialize(now);
   for (int i = 0; i < 5; ++i) {
-    model.advanceTo(now += kPeriod);
-    model.correct(seen(kStep, 1e-3, 1e-4), true);
+    model.advanceTo(now += kFramePeriod);
+    model.correct(seen(kMotion, 1e-3, 1e-4), true);
     model.markFrame();
   }
-  model.advanceTo(now += kPeriod);
+  model.advanceTo(now += kFramePeriod);
   const MotionSummary summary = model.motionSinceFrame();
-  EXPECT_LT(logSO3(summary.T_a_b.linear().transpose() * kStep.linear()).norm(), 1e-9);
+  EXPECT_LT(logSO3(summary.T_a_b.linear().transpose() * kMotion.linear()).norm(), 1e-9);
   // The velocity is constant in body axes now, so the displacement is off by the turn of one frame.
-  EXPECT_LT((summary.T_a_b.translation() - kStep.translation()).norm(), 0.05 * kStep.translation().norm());
+  EXPECT_LT((summary.T_a_b.translation() - kMotion.translation()).norm(), 0.05 * kMotion.translation().norm());
   EXPECT_LT(summary.translation_covariance.trace(), 3.0 * std::pow(0.05 * 0.3, 2));
-  model.advanceTo(now += kPeriod);  // two frames ahead: twice as far
-  EXPECT_NEAR(logSO3(model.motionSinceFrame().T_a_b.linear()).norm(), 2.0 * logSO3(kStep.linear()).norm(), 1e-9);
+  model.advanceTo(now += kFramePeriod);  // two frames ahead: twice as far
+  EXPECT_NEAR(logSO3(model.motionSinceFrame().T_a_b.linear()).norm(), 2.0 * logSO3(kMotion.linear()).norm(), 1e-9);
 }
 
 TEST(ConstantRateMotion, CarriesTheVerticalWithVision) {
@@ -84,11 +84,11 @@ TEST(ConstantRateMotion, CarriesTheVerticalWithVision) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  // body now in body at the start
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d before = model.up();
-    model.advanceTo(now += kPeriod);
-    model.correct(seen(kStep, 1e-3, 1e-4), true);
+    model.advanceTo(now += kFramePeriod);
+    model.correct(seen(kMotion, 1e-3, 1e-4), true);
     EXPECT_EQ(model.upAtFrame(), before);
     model.markFrame();
-    R = R * kStep.linear();
+    R = R * kMotion.linear();
     EXPECT_LT((model.up() - R.transpose() * Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
 }
@@ -97,14 +97,14 @@ TEST(ConstantRateMotion, WithoutScaleTheSpeedStaysAndTheDirectionIsVisions) {
   ConstantRateMotion model(0.0524, 5.0);
   std::int64_t now = 1000;
   model.initialize(now);
-  model.advanceTo(now += kPeriod);
+  model.advanceTo(now += kFramePeriod);
   model.correct(seen(motion({0.1, 0.0, 0.0}, Eigen::Vector3d::Zero()), 1e-3, 1e-4), true);
   model.markFrame();
   const double speed = model.twist().linear.norm(), sigma = std::sqrt(model.twist().covariance(0, 0));
   EXPECT_NEAR(speed, 2.0, 1e-9);
   double last = sigma;
   for (int i = 0; i < 100; ++i) {
-    model.advanceTo(now += kPeriod);
+    model.advanceTo(now += kFramePeriod);
     model.correct(seen(motion({0.0, 7.0, 0.0}, Eigen::Vector3d::Zero()), 1e-3, 1e-4), false);
     model.markFrame();
     EXPECT_NEAR(model.twist().linear.norm(), speed, 1e-9);
@@ -119,8 +119,8 @@ TEST(ConstantRateMotion, WithoutScaleTheSpeedStaysAndTheDirectionIsVisions) {
 TEST(ConstantRateMotion, ResetAndRestart) {
   ConstantRateMotion model(0.0524, 5.0);
   model.initialize(1000);
-  model.advanceTo(1000 + kPeriod);
-  model.correct(seen(kStep, 1e-3, 1e-4), true);
+  model.advanceTo(1000 + kFramePeriod);
+  model.correct(seen(kMotion, 1e-3, 1e-4), true);
   const Eigen::Vector3d up = model.up();
   model.restartAt(500, 0.17);
   EXPECT_TRUE(model.initialized());

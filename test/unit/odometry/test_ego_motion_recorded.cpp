@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -26,8 +29,6 @@ TrajectoryError compare(const std::vector<Eigen::Isometry3d>& truth, const std::
     from.col(i) = found[i].translation();
   }
   TrajectoryError error;
-  const Eigen::Matrix4d similarity = Eigen::umeyama(from, to, true);
-  error.scale = 1.0 / similarity.topLeftCorner<3, 3>().col(0).norm();
   const Eigen::Vector3d to_mean = to.rowwise().mean(), from_mean = from.rowwise().mean();
   to.colwise() -= to_mean;
   from.colwise() -= from_mean;
@@ -35,6 +36,11 @@ TrajectoryError compare(const std::vector<Eigen::Isometry3d>& truth, const std::
   const double cosine = (from.row(0).array() * to.row(0).array() + from.row(1).array() * to.row(1).array()).sum();
   const Eigen::Matrix3d R = expSO3({0.0, 0.0, std::atan2(sine, cosine)});
   error.ate = std::sqrt((R * from - to).squaredNorm() / n);
+  // Scale of the best similarity (Umeyama, PAMI 1991).
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < n; ++i) moments += to.col(i) * from.col(i).transpose();
+  const Eigen::Vector3d singular = Eigen::JacobiSVD<Eigen::Matrix3d>(moments).singularValues();
+  error.scale = from.squaredNorm() / (singular[0] + singular[1] + std::copysign(singular[2], moments.determinant()));
   return error;
 }
 

@@ -12,14 +12,14 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr std::int64_t kStart = 1000000000;
+constexpr std::int64_t kOrigin = 1000000000;
 const Eigen::Vector3d kNoBias = Eigen::Vector3d::Zero();
 
 ImuBuffer bufferOf(const std::function<Eigen::Vector3d(double)>& rate, double rate_hz, double duration_s) {
   ImuBuffer buffer;
   for (int i = 0; i <= std::lround(duration_s * rate_hz); ++i) {
     ImuSample sample;
-    sample.stamp_ns = kStart + std::llround(1e9 * i / rate_hz);
+    sample.stamp_ns = kOrigin + std::llround(1e9 * i / rate_hz);
     sample.angular_velocity = rate(i / rate_hz);
     buffer.add(sample);
   }
@@ -39,7 +39,7 @@ Eigen::Vector3d coningRate(double t, double angle, double frequency) {
 TEST(GyroscopeIntegration, IsExactForConstantRate) {
   const Eigen::Vector3d rate(0.4, -1.2, 2.0);
   const ImuBuffer buffer = bufferOf([&](double) { return rate; }, 200, 1.0);
-  const auto rotation = integrateGyroscope(buffer, kStart + 3000000, kStart + 903000000, kNoBias, 1e-3);
+  const auto rotation = integrateGyroscope(buffer, kOrigin + 3000000, kOrigin + 903000000, kNoBias, 1e-3);
   EXPECT_TRUE(rotation.R_1_2.isApprox(expSO3(0.9 * rate), 1e-12));
   EXPECT_NEAR(rotation.duration_s, 0.9, 1e-9);
   EXPECT_NEAR(rotation.largest_gap_s, 0.005, 1e-9);
@@ -50,7 +50,7 @@ TEST(GyroscopeIntegration, FollowsConing) {
   const double angle = 0.2, frequency = 2 * M_PI * 3;
   const ImuBuffer buffer = bufferOf([&](double t) { return coningRate(t, angle, frequency); }, 200, 2.0);
   const Eigen::Matrix3d truth = coningAttitude(0, angle, frequency).transpose() * coningAttitude(2.0, angle, frequency);
-  const auto rotation = integrateGyroscope(buffer, kStart, kStart + 2000000000, kNoBias, 1e-3);
+  const auto rotation = integrateGyroscope(buffer, kOrigin, kOrigin + 2000000000, kNoBias, 1e-3);
   EXPECT_LT(logSO3(truth.transpose() * rotation.R_1_2).norm(), 2e-3);
 
   // The coning term is what keeps it there: the trapezoid alone drifts about z with every turn.
@@ -67,7 +67,7 @@ TEST(GyroscopeIntegration, ConvergesWithSecondOrder) {
     return Eigen::Vector3d(1.5 * std::sin(5 * t), -std::cos(7 * t), 0.8 * std::sin(3 * t + 1));
   };
   const auto integrate = [&](double rate_hz) {
-    return integrateGyroscope(bufferOf(rate, rate_hz, 1.0), kStart, kStart + 1000000000, kNoBias, 1e-3).R_1_2;
+    return integrateGyroscope(bufferOf(rate, rate_hz, 1.0), kOrigin, kOrigin + 1000000000, kNoBias, 1e-3).R_1_2;
   };
   const Eigen::Matrix3d fine = integrate(5000);
   const double coarse_error = logSO3(fine.transpose() * integrate(50)).norm();
@@ -81,7 +81,7 @@ TEST(GyroscopeIntegration, BiasJacobianMatchesDifferences) {
   const ImuBuffer buffer = bufferOf(rate, 200, 1.0);
   const Eigen::Vector3d bias(0.02, -0.05, 0.03);
   const auto at = [&](const Eigen::Vector3d& b) {
-    return integrateGyroscope(buffer, kStart, kStart + 812000000, b, 1);
+    return integrateGyroscope(buffer, kOrigin, kOrigin + 812000000, b, 1);
   };
   const auto rotation = at(bias);
   const double h = 1e-5;
@@ -95,8 +95,8 @@ TEST(GyroscopeIntegration, BiasJacobianMatchesDifferences) {
 TEST(GyroscopeIntegration, CovarianceMatchesScatter) {
   const double density = 2e-3, rate_hz = 200;
   const auto rate = [](double t) { return Eigen::Vector3d(3 * std::sin(4 * t), 1.5, -2 * std::cos(5 * t)); };
-  const std::int64_t end = kStart + 500000000;
-  const auto truth = integrateGyroscope(bufferOf(rate, rate_hz, 0.5), kStart, end, kNoBias, density);
+  const std::int64_t end = kOrigin + 500000000;
+  const auto truth = integrateGyroscope(bufferOf(rate, rate_hz, 0.5), kOrigin, end, kNoBias, density);
   std::mt19937 generator(7);
   std::normal_distribution<double> normal(0, density * std::sqrt(rate_hz));
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -105,7 +105,7 @@ TEST(GyroscopeIntegration, CovarianceMatchesScatter) {
     const auto noisy = [&](double t) -> Eigen::Vector3d {
       return rate(t) + Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
     };
-    const auto R = integrateGyroscope(bufferOf(noisy, rate_hz, 0.5), kStart, end, kNoBias, density).R_1_2;
+    const auto R = integrateGyroscope(bufferOf(noisy, rate_hz, 0.5), kOrigin, end, kNoBias, density).R_1_2;
     const Eigen::Vector3d error = logSO3(R.transpose() * truth.R_1_2);
     scatter += error * error.transpose() / runs;
   }
@@ -115,18 +115,18 @@ TEST(GyroscopeIntegration, CovarianceMatchesScatter) {
 TEST(GyroscopeIntegration, BackwardsIsTheInverse) {
   const auto rate = [](double t) { return Eigen::Vector3d(std::sin(t), 0.7, -t); };
   const ImuBuffer buffer = bufferOf(rate, 200, 1.0);
-  const std::int64_t end = kStart + 700000000;
-  const auto there = integrateGyroscope(buffer, kStart, end, kNoBias, 1e-3);
-  const auto back = integrateGyroscope(buffer, end, kStart, kNoBias, 1e-3);
+  const std::int64_t end = kOrigin + 700000000;
+  const auto there = integrateGyroscope(buffer, kOrigin, end, kNoBias, 1e-3);
+  const auto back = integrateGyroscope(buffer, end, kOrigin, kNoBias, 1e-3);
   EXPECT_TRUE((there.R_1_2 * back.R_1_2).isIdentity(1e-12));
   const Eigen::Vector3d step(1e-6, -2e-6, 1e-6);
-  const auto moved = integrateGyroscope(buffer, end, kStart, step, 1e-3);
+  const auto moved = integrateGyroscope(buffer, end, kOrigin, step, 1e-3);
   EXPECT_LT((logSO3(back.R_1_2.transpose() * moved.R_1_2) - back.bias_jacobian * step).norm(), 1e-9);
 }
 
 TEST(GyroscopeIntegration, ReportsWhatIsNotCovered) {
   const ImuBuffer buffer = bufferOf([](double) { return Eigen::Vector3d(1, 0, 0); }, 200, 0.5);
-  const auto rotation = integrateGyroscope(buffer, kStart + 400000000, kStart + 600000000, kNoBias, 1e-3);
+  const auto rotation = integrateGyroscope(buffer, kOrigin + 400000000, kOrigin + 600000000, kNoBias, 1e-3);
   EXPECT_FALSE(rotation.complete);
   EXPECT_NEAR(rotation.duration_s, 0.1, 1e-9);
   EXPECT_NEAR(rotation.largest_gap_s, 0.1, 1e-9);

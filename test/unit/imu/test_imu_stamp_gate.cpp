@@ -8,16 +8,17 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr std::int64_t kMs = 1000000;
-constexpr std::int64_t kStart = 1000000 * kMs;
+constexpr std::int64_t kFirstStamp = 1000000 * kMs;
 
 class ImuStampGateTest : public ::testing::Test {
  protected:
   // Stamps [ms] of what a sample lets pass.
   std::vector<int> pass(int stamp_ms) {
     ImuSample sample;
-    sample.stamp_ns = kStart + stamp_ms * kMs;
+    sample.stamp_ns = kFirstStamp + stamp_ms * kMs;
     std::vector<int> stamps;
-    for (const ImuSample& one : gate_.pass(sample)) stamps.push_back(static_cast<int>((one.stamp_ns - kStart) / kMs));
+    for (const ImuSample& one : gate_.pass(sample))
+      stamps.push_back(static_cast<int>((one.stamp_ns - kFirstStamp) / kMs));
     return stamps;
   }
   using Stamps = std::vector<int>;

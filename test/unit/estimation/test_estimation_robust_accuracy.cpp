@@ -80,7 +80,7 @@ TEST(InlierWeights, OutliersOnTheLineAtADistanceOfNoInlierAreDropped) {
   const auto add = [&](double error, double nearness, double parallax) {
     residuals.errors.push_back(error);
     residuals.nearness.push_back(nearness);
-    residuals.squared_parallaxes.push_back(parallax * parallax);
+    residuals.leverages.push_back(parallax * parallax);
   };
   for (int i = 0; i < 100; ++i) add(0.01 * i, 0.1, 0.05);
   add(0.1, 3.0, 0.6);                                       // fits, but is far too near
@@ -91,7 +91,7 @@ TEST(InlierWeights, OutliersOnTheLineAtADistanceOfNoInlierAreDropped) {
   for (int i = 100; i < 121; ++i) EXPECT_EQ(weights[i], 0.0) << i;
 
   // Without outliers there is no reason to drop it, only to weigh it less.
-  for (auto* column : {&residuals.errors, &residuals.nearness, &residuals.squared_parallaxes}) column->resize(101);
+  for (auto* column : {&residuals.errors, &residuals.nearness, &residuals.leverages}) column->resize(101);
   weighInliers(residuals, 0.5, 2.0, &weights);
   EXPECT_GT(weights[100], 0.0);
   EXPECT_LT(weights[100], 0.3 * weights[0]);

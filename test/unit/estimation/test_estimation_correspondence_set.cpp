@@ -11,9 +11,6 @@
 namespace multicam_egomotion {
 namespace {
 
-const Eigen::Vector3d kRotation(0.02, -0.03, 0.08);
-const Eigen::Vector3d kTranslation(-0.4, 0.1, 0.05);
-
 constexpr double kLimit = 1000.0;  // [px], behind a camera
 
 std::vector<double> errorsOf(const CorrespondenceSet& set, const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
@@ -138,7 +135,7 @@ TEST(CorrespondenceSet, APointBehindTheCamerasIsAnOutlier) {
   EXPECT_GT(outliers, 0.8 * set.size());
 }
 
-TEST(CorrespondenceSet, NearnessIsTheInverseDistance) {
+TEST(CorrespondenceSet, NearnessIsTheInverseDistanceAndLeverageIsPerBaseline) {
   const CorrespondenceScene scene = makeCorrespondenceScene(stereoShape(), kRotation, kTranslation, 60, 0.0, 0.0, 7);
   const CorrespondenceSet set = scene.set();
   CorrespondenceSet::Residuals residuals;
@@ -154,7 +151,8 @@ TEST(CorrespondenceSet, NearnessIsTheInverseDistance) {
     // depth2 d = depth1 a + b, so depth2 (a × d) = a × b.
     const double depth = a.cross(b).dot(a.cross(d)) / a.cross(d).squaredNorm();
     EXPECT_NEAR(residuals.nearness[i], unit / depth, 1e-6 * unit / depth);
-    EXPECT_NEAR(residuals.squared_parallaxes[i], a.cross(d).squaredNorm(), 1e-12);
+    const double leverage = a.cross(d).squaredNorm() * unit * unit / b.squaredNorm();
+    EXPECT_NEAR(residuals.leverages[i], leverage, 1e-12 + 1e-9 * leverage);
   }
 }
 

@@ -16,11 +16,11 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr std::int64_t kMs = 1000000;
-constexpr std::int64_t kStart = 1400000000LL * 1000 * kMs;
+constexpr std::int64_t kEpoch = 1400000000LL * 1000 * kMs;
 
-std::int64_t at(double ms) { return kStart + std::llround(ms * kMs); }
+std::int64_t at(double ms) { return kEpoch + std::llround(ms * kMs); }
 
-// Feeds images and keeps every set that came out. Times in milliseconds after kStart.
+// Feeds images and keeps every set that came out. Times in milliseconds after kEpoch.
 class Feed {
  public:
   explicit Feed(int cameras, const FrameAssemblerOptions& options = {}, const std::vector<std::int64_t>& offsets = {})

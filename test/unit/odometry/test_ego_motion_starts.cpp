@@ -17,7 +17,7 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
 constexpr double kSpan = 2.0;         // in which the vertical is to be found [s]
 constexpr double kLeastSpeed = 0.05;  // of a start in motion [m/s]
 
@@ -64,7 +64,8 @@ Tilt tiltAfter(const MovingRecording& moving, int first, int frames) {
   const Eigen::Vector3d up =
       result.T_odom_body.pose.linear() * moving.truth(result.stamp_ns).linear().row(2).transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> tilt(result.T_odom_body.covariance.block<2, 2>(3, 3));
-  return {std::atan2(up.head<2>().norm(), up.z()) / kDegree, std::sqrt(tilt.eigenvalues()[1]) / kDegree};
+  return {std::atan2(up.head<2>().norm(), up.z()) * kDegreesPerRadian,
+          std::sqrt(tilt.eigenvalues()[1]) * kDegreesPerRadian};
 }
 
 /// Tilts two seconds after random starts.

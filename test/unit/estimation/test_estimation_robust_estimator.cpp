@@ -14,9 +14,6 @@
 namespace multicam_egomotion {
 namespace {
 
-const Eigen::Vector3d kRotation(0.01, -0.02, 0.06);
-const Eigen::Vector3d kTranslation(-0.5, 0.1, 0.04);
-
 using Vertical = FourPointVertical;
 using Axis = FourPointAxis;
 

@@ -18,9 +18,9 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
+constexpr double kOneDegree = M_PI / 180;
 constexpr double kGravity = 9.81;
-constexpr std::int64_t kStart = 5000000000;
+constexpr std::int64_t kBegin = 5000000000;
 constexpr double kRateHz = 200;
 
 /// A smooth motion known in closed form: position and three angles as sinusoids; `vigour` 0 is rest.
@@ -49,7 +49,7 @@ struct Trajectory {
   }
   ImuSample sample(double t) const {
     ImuSample sample;
-    sample.stamp_ns = kStart + std::llround(t * 1e9);
+    sample.stamp_ns = kBegin + std::llround(t * 1e9);
     sample.angular_velocity = rate(t) + gyroscope_bias;
     sample.linear_acceleration = attitude(t).transpose() * (acceleration(t) + Eigen::Vector3d(0, 0, kGravity));
     return sample;
@@ -109,7 +109,7 @@ void followOver(const Trajectory& motion, double begin, double end, InertialStat
   for (int i = std::lround(begin * 20); i < std::lround(end * 20); ++i) {
     const double t1 = i / 20.0, t2 = (i + 1) / 20.0;
     propagateOver(motion, t1, t2, state);
-    state->correctRelativeRotation(motion.attitude(t1).transpose() * motion.attitude(t2), isotropic(0.05 * kDegree));
+    state->correctRelativeRotation(motion.attitude(t1).transpose() * motion.attitude(t2), isotropic(0.05 * kOneDegree));
     state->correctVelocity(motion.attitude(t2).transpose() * motion.velocity(t2), isotropic(0.05));
     state->markFrame();
   }
@@ -144,9 +144,9 @@ TEST(InertialState, StartsAtRestWithTheGyroscopeBias) {
   EXPECT_TRUE(state.startedStill());
   EXPECT_LT((state.gyroscopeBias() - bias).norm(), 0.002);
   EXPECT_LT(std::sqrt(state.gyroscopeBiasCovariance()(0, 0)), 0.006);
-  EXPECT_LT(tiltError(state, rest.attitude(0)).norm(), 0.2 * kDegree);
-  EXPECT_LT(state.tiltSigma(), 1.5 * kDegree);
-  EXPECT_GT(state.tiltSigma(), 0.5 * kDegree);  // the accelerometer bias is unknown
+  EXPECT_LT(tiltError(state, rest.attitude(0)).norm(), 0.2 * kOneDegree);
+  EXPECT_LT(state.tiltSigma(), 1.5 * kOneDegree);
+  EXPECT_GT(state.tiltSigma(), 0.5 * kOneDegree);  // the accelerometer bias is unknown
   EXPECT_NEAR(std::sqrt(state.velocityCovariance()(0, 0)), 5.0, 0.1);
 }
 
@@ -154,7 +154,7 @@ TEST(InertialState, StartsInMotionWithAWideTilt) {
   const Trajectory motion;
   const InertialState state = started(motion);
   EXPECT_FALSE(state.startedStill());
-  EXPECT_GT(state.tiltSigma(), 3 * kDegree);
+  EXPECT_GT(state.tiltSigma(), 3 * kOneDegree);
   EXPECT_LT(tiltError(state, motion.attitude(0)).norm(), 3 * state.tiltSigma());
 }
 
@@ -208,11 +208,11 @@ TEST(InertialState, PredictsRotationAndDisplacementSinceTheFrame) {
   propagateOver(motion, t1, t2, &state);
   const Eigen::Matrix3d R_1_2 = motion.attitude(t1).transpose() * motion.attitude(t2);
   const Eigen::Vector3d p_1_2 = motion.attitude(t1).transpose() * (motion.position(t2) - motion.position(t1));
-  EXPECT_LT(logSO3(R_1_2.transpose() * state.rotationSinceFrame()).norm(), 0.02 * kDegree);
+  EXPECT_LT(logSO3(R_1_2.transpose() * state.rotationSinceFrame()).norm(), 0.02 * kOneDegree);
   EXPECT_LT((state.displacementSinceFrame() - p_1_2).norm(), 0.01);
   EXPECT_LT((state.velocityInImuAxes() - motion.attitude(t2).transpose() * motion.velocity(t2)).norm(), 0.03);
   EXPECT_LT((state.angularVelocity() - motion.rate(t2)).norm(), 0.005);
-  EXPECT_EQ(state.frameStamp(), kStart + 20000000000);
+  EXPECT_EQ(state.frameStamp(), kBegin + 20000000000);
 }
 
 TEST(InertialState, IsConsistentOverManyRuns) {
@@ -220,7 +220,7 @@ TEST(InertialState, IsConsistentOverManyRuns) {
   const InertialStateOptions options = idealOptions();
   const ImuCalibration imu;
   const int runs = 50;
-  const double rotation_sigma = 0.05 * kDegree, velocity_sigma = 0.05, displacement_sigma = 0.0025;
+  const double rotation_sigma = 0.05 * kOneDegree, velocity_sigma = 0.05, displacement_sigma = 0.0025;
   for (const bool by_displacement : {false, true}) {
     double tilt = 0, velocity = 0, gyroscope_bias = 0, accelerometer_bias = 0, rotation = 0, displacement = 0;
     int checks = 0;
@@ -294,10 +294,10 @@ TEST(InertialState, RejectsAnOutlierAndRecoversFromAWrongState) {
   propagateOver(motion, 10, 10.05, &state);
   const Eigen::Matrix3d before = state.attitude();
   const Eigen::Matrix3d R_1_2 = motion.attitude(10).transpose() * motion.attitude(10.05);
-  EXPECT_FALSE(state.correctRelativeRotation(R_1_2 * expSO3(Eigen::Vector3d(0.2, 0, 0)), isotropic(0.05 * kDegree)));
+  EXPECT_FALSE(state.correctRelativeRotation(R_1_2 * expSO3(Eigen::Vector3d(0.2, 0, 0)), isotropic(0.05 * kOneDegree)));
   EXPECT_EQ(state.rotationCounts().rejected, 1u);
   EXPECT_EQ(state.attitude(), before);
-  EXPECT_TRUE(state.correctRelativeRotation(R_1_2, isotropic(0.05 * kDegree)));
+  EXPECT_TRUE(state.correctRelativeRotation(R_1_2, isotropic(0.05 * kOneDegree)));
   EXPECT_EQ(state.rotationCounts().consecutive_rejections, 0);
 
   // Another velocity from now on, as after a wrong scale: believed within a few frames.
@@ -354,7 +354,7 @@ TEST(InertialState, WidensOverAGapAndSaysSo) {
   ImuBuffer whole, holed;
   for (const ImuSample& sample : samplesOver(motion, -0.5, 6)) {
     whole.add(sample);
-    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kStart);
+    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kBegin);
     if (t < 5.2 || t > 5.4) {
       holed.add(sample);
     }
@@ -362,7 +362,7 @@ TEST(InertialState, WidensOverAGapAndSaysSo) {
   InertialState state = started(motion);
   followOver(motion, 0, 5, &state);
   InertialState with_gap = state;
-  const std::int64_t end = kStart + 5501000000;
+  const std::int64_t end = kBegin + 5501000000;
   EXPECT_TRUE(state.propagateTo(end, whole));
   EXPECT_TRUE(with_gap.propagateTo(end, holed));
   EXPECT_EQ(with_gap.stamp(), end);
@@ -371,28 +371,28 @@ TEST(InertialState, WidensOverAGapAndSaysSo) {
   EXPECT_GT(sigma_with_gap, 3 * sigma);
   const Eigen::Matrix3d R_1_2 = motion.attitude(5).transpose() * motion.attitude(5.501);
   EXPECT_LT(logSO3(R_1_2.transpose() * with_gap.rotationSinceFrame()).norm(), 3 * sigma_with_gap);
-  EXPECT_FALSE(state.propagateTo(kStart + 6100000000, whole));  // 0.1 s more than there is
-  EXPECT_EQ(state.stamp(), kStart + 6100000000);
-  EXPECT_FALSE(state.propagateTo(kStart, whole));
+  EXPECT_FALSE(state.propagateTo(kBegin + 6100000000, whole));  // 0.1 s more than there is
+  EXPECT_EQ(state.stamp(), kBegin + 6100000000);
+  EXPECT_FALSE(state.propagateTo(kBegin, whole));
 }
 
 TEST(InertialState, ASilentImuIsAGapHoweverOftenItIsAsked) {
   const Trajectory motion;
   ImuBuffer silent, holed;
   for (const ImuSample& sample : samplesOver(motion, -0.5, 10)) {
-    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kStart);
+    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kBegin);
     if (t <= 5) silent.add(sample);
     if (t <= 5 || t >= 6.5) holed.add(sample);
   }
   InertialState seldom = started(motion);
   followOver(motion, 0, 5, &seldom);
   InertialState often = seldom, across = seldom;
-  EXPECT_FALSE(seldom.propagateTo(kStart + 6500000000, silent));
+  EXPECT_FALSE(seldom.propagateTo(kBegin + 6500000000, silent));
   double sigma = 0, tilt_sigma = 0;
   for (int i = 1; i <= 60; ++i) {
     const double t = 5 + i * 0.025;
-    EXPECT_FALSE(often.propagateTo(kStart + std::llround(t * 1e9), silent));
-    across.propagateTo(kStart + std::llround(t * 1e9), holed);
+    EXPECT_FALSE(often.propagateTo(kBegin + std::llround(t * 1e9), silent));
+    across.propagateTo(kBegin + std::llround(t * 1e9), holed);
     EXPECT_GT(often.displacementSinceFrameCovariance().trace(), sigma);  // nothing is learnt from what is held
     EXPECT_GT(often.tiltSigma(), tilt_sigma);
     sigma = often.displacementSinceFrameCovariance().trace();
@@ -403,13 +403,13 @@ TEST(InertialState, ASilentImuIsAGapHoweverOftenItIsAsked) {
     const Eigen::Vector3d error = p - state->displacementSinceFrame();
     EXPECT_LT(squaredMahalanobis(error, state->displacementSinceFrameCovariance()), 14.2);
     EXPECT_LT(tiltError(*state, motion.attitude(6.5)).norm(), 3 * state->tiltSigma());
-    EXPECT_GT(state->tiltSigma(), 20 * kDegree);
+    EXPECT_GT(state->tiltSigma(), 20 * kOneDegree);
   }
   EXPECT_NEAR(often.tiltSigma(), seldom.tiltSigma(), 0.1 * seldom.tiltSigma());
   propagateOver(motion, 6.5, 6.6, &across);
   followOver(motion, 6.6, 10, &across);
   EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 3 * across.tiltSigma());
-  EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 2 * kDegree);
+  EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 2 * kOneDegree);
 }
 
 TEST(InertialState, VisionWinsOverABrokenGyroscope) {
@@ -429,7 +429,7 @@ TEST(InertialState, VisionWinsOverABrokenGyroscope) {
     const Eigen::Matrix3d R = motion.attitude(t1).transpose() * motion.attitude(t2);
     const Eigen::Vector3d off = logSO3(state.rotationSinceFrame().transpose() * R);
     const double nees = squaredMahalanobis(off, state.rotationSinceFrameCovariance());
-    state.correctRelativeRotation(R, isotropic(0.05 * kDegree));
+    state.correctRelativeRotation(R, isotropic(0.05 * kOneDegree));
     state.correctVelocity(motion.attitude(t2).transpose() * motion.velocity(t2), isotropic(0.05));
     state.markFrame();
     return nees;
@@ -440,7 +440,7 @@ TEST(InertialState, VisionWinsOverABrokenGyroscope) {
   EXPECT_LE(surprises, 8);
   for (int frame = 180; frame < 220; ++frame) follow(frame, false);
   EXPECT_LT(tiltError(state, motion.attitude(11)).norm(), 3 * state.tiltSigma());
-  EXPECT_LT(tiltError(state, motion.attitude(11)).norm(), 1.5 * kDegree);
+  EXPECT_LT(tiltError(state, motion.attitude(11)).norm(), 1.5 * kOneDegree);
   EXPECT_LT((state.gyroscopeBias() - bias).norm(), 0.02);
 }
 
@@ -451,7 +451,7 @@ TEST(InertialState, KeepsTheVerticalThroughALongOutageOfVision) {
     propagateOver(motion, second - 1, second, &state);
     ASSERT_LT(tiltError(state, motion.attitude(second)).norm(), 3 * state.tiltSigma()) << second;
   }
-  EXPECT_LT(state.tiltSigma(), 5 * kDegree);
+  EXPECT_LT(state.tiltSigma(), 5 * kOneDegree);
   EXPECT_LT(std::sqrt(state.velocityCovarianceInImuAxes()(0, 0)), 15.0);  // bounded
   followOver(motion, 120, 125, &state);
   EXPECT_LT(tiltError(state, motion.attitude(125)).norm(), 3 * state.tiltSigma());
@@ -463,11 +463,11 @@ TEST(InertialState, RestartsAtAnotherTimeWithItsBiases) {
   followOver(motion, 0, 10, &state);
   const double sigma = state.tiltSigma();
   const Eigen::Vector3d bias = state.gyroscopeBias();
-  state.restartAt(1000, 10 * kDegree);
+  state.restartAt(1000, 10 * kOneDegree);
   EXPECT_EQ(state.stamp(), 1000);
   EXPECT_EQ(state.frameStamp(), 1000);
   EXPECT_EQ(state.gyroscopeBias(), bias);
-  EXPECT_NEAR(state.tiltSigma(), std::hypot(sigma, 10 * kDegree), 1e-6);
+  EXPECT_NEAR(state.tiltSigma(), std::hypot(sigma, 10 * kOneDegree), 1e-6);
   EXPECT_NEAR(state.velocityCovarianceInImuAxes()(1, 1), 25, 1e-9);
   EXPECT_TRUE(state.velocity().isZero());
 

@@ -21,16 +21,16 @@ double angleBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return logSO3(a.linear().transpose() * b.linear()).norm();
 }
 
-constexpr double kPeriod = 0.05;
-const Eigen::Isometry3d kStep = pose({0.05, 0.01, 0.0}, {0.0, 0.0, 0.02});
+constexpr double kInterval = 0.05;
+const Eigen::Isometry3d kAdvance = pose({0.05, 0.01, 0.0}, {0.0, 0.0, 0.02});
 
 TEST(PublishedPose, FollowsAWindowThatDoesNotChangeItsMind) {
   PublishedPose published;
   Eigen::Isometry3d window = pose({1.0, 2.0, 3.0}, {0.1, 0.2, 0.3});
   published.start(window);
   for (int i = 0; i < 200; ++i) {
-    published.follow(window, window * kStep, kPeriod);
-    window = window * kStep;
+    published.follow(window, window * kAdvance, kInterval);
+    window = window * kAdvance;
     EXPECT_LT((published.pose().translation() - window.translation()).norm(), 1e-9);
     EXPECT_LT(angleBetween(published.pose(), window), 1e-9);
   }
@@ -45,13 +45,13 @@ TEST(PublishedPose, CorrectionsOfThePastAreNoJumpsAndDecay) {
   window = correction * window;
   for (int i = 0; i < 60; ++i) {
     const Eigen::Isometry3d before = published.pose();
-    published.follow(window, window * kStep, kPeriod);
-    window = window * kStep;
+    published.follow(window, window * kAdvance, kInterval);
+    window = window * kAdvance;
     const Eigen::Isometry3d moved = before.inverse() * published.pose();
     // A tenth of the correction a frame at most comes on top of the motion.
-    EXPECT_LT((moved.translation() - kStep.translation()).norm(), 0.11 * 0.2 + 0.002);
-    EXPECT_LT(angleBetween(moved, kStep), 0.11 * 0.035 + 1e-6);
-    const double share = std::exp(-(i + 1) * kPeriod / 0.5);
+    EXPECT_LT((moved.translation() - kAdvance.translation()).norm(), 0.11 * 0.2 + 0.002);
+    EXPECT_LT(angleBetween(moved, kAdvance), 0.11 * 0.035 + 1e-6);
+    const double share = std::exp(-(i + 1) * kInterval / 0.5);
     EXPECT_NEAR((published.pose().translation() - window.translation()).norm(), share * 0.2, 0.02);
     EXPECT_NEAR(angleBetween(published.pose(), window), share * 0.035, 1e-6);
   }
@@ -84,8 +84,8 @@ TEST(PublishedPose, TheRotationStaysARotation) {
   Eigen::Isometry3d window = pose({0.0, 0.0, 0.0}, {0.1, 0.4, -0.2});
   published.start(Eigen::Isometry3d::Identity());
   for (int i = 0; i < 20000; ++i) {
-    published.follow(window, window * kStep, kPeriod);
-    window = window * kStep;
+    published.follow(window, window * kAdvance, kInterval);
+    window = window * kAdvance;
     window.linear() = Eigen::Quaterniond(window.linear()).normalized().toRotationMatrix();
   }
   const Eigen::Matrix3d R = published.pose().linear();
@@ -127,8 +127,8 @@ TEST(TiltCorrection, IsLimitedInRateAndEndsUpright) {
   const Eigen::Vector3d up = R.transpose() * expSO3({0.02, 0.025, 0.0}) * Eigen::Vector3d::UnitZ();
   double last = std::acos((R * up).z());
   for (int i = 0; i < 600; ++i) {
-    const Eigen::Matrix3d turn = slowed(tiltCorrection(R, up, 0.0), max_rate, kPeriod);
-    EXPECT_LE(logSO3(turn).norm(), max_rate * kPeriod * (1.0 + 1e-9));
+    const Eigen::Matrix3d turn = slowed(tiltCorrection(R, up, 0.0), max_rate, kInterval);
+    EXPECT_LE(logSO3(turn).norm(), max_rate * kInterval * (1.0 + 1e-9));
     EXPECT_LT(std::abs(logSO3(turn).z()), 1e-12) << "yaw is not gravity's";
     R = turn * R;
     const double now = std::acos(std::min(1.0, (R * up).z()));

@@ -16,8 +16,6 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-const Eigen::Vector3d kRotation(0.02, -0.03, 0.08);
-const Eigen::Vector3d kTranslation(-0.4, 0.1, 0.05);
 constexpr double kMaxError = 2.0;  // [px]
 
 RayBlocks<double> blocksOf(const CorrespondenceSet& set) {

@@ -11,19 +11,19 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr std::int64_t kPeriod = 50000000;  // [ns]
-constexpr int kWidth = 160, kHeight = 120;
+constexpr int kColumns = 160, kRows = 120;
 
 CameraRig twoCameras() {
   std::vector<RigCamera> cameras;
   for (const char* name : {"left", "right"}) {
-    cameras.push_back({name, name, CameraModel(kWidth, kHeight, 100.0, 100.0, 79.5, 59.5, Distortion::kNone, {}),
+    cameras.push_back({name, name, CameraModel(kColumns, kRows, 100.0, 100.0, 79.5, 59.5, Distortion::kNone, {}),
                        Eigen::Isometry3d::Identity()});
   }
   return CameraRig(cameras);
 }
 
 cv::Mat texture(int seed, double mean = 128.0, double sigma = 30.0) {
-  cv::Mat grey(kHeight, kWidth, CV_8UC1);
+  cv::Mat grey(kRows, kColumns, CV_8UC1);
   cv::RNG random(seed);
   random.fill(grey, cv::RNG::NORMAL, mean, sigma);
   return grey;
@@ -107,7 +107,7 @@ TEST_F(ImageMonitorTest, OneCameraIsFrozenWhereAnotherSeesChange) {
 }
 
 TEST_F(ImageMonitorTest, NamesPicturesThatShowNothing) {
-  const cv::Mat grey(kHeight, kWidth, CV_8UC1, cv::Scalar(90));
+  const cv::Mat grey(kRows, kColumns, CV_8UC1, cv::Scalar(90));
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(monitor_.faults().empty());
     EXPECT_EQ(kept(texture(i, 4.0, 1.0), texture(i, 254.0, 20.0), 0.1, true), both_);

@@ -14,9 +14,6 @@
 namespace multicam_egomotion {
 namespace {
 
-const Eigen::Vector3d kRotation(0.02, -0.03, 0.05);
-const Eigen::Vector3d kTranslation(-0.4, 0.1, 0.05);
-
 CorrespondenceScene sceneOf(const RigShape& rig, int count) {
   return makeCorrespondenceScene(rig, kRotation, kTranslation, count, 0.5, 0.0, 1);
 }
