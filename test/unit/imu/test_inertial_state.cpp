@@ -172,7 +172,7 @@ TEST(InertialState, DoesNotTakeASmoothCurveForRest) {
   ASSERT_TRUE(state.initialize(samples));
   EXPECT_FALSE(state.startedStill());
   const double error = std::acos(state.attitude()(2, 2));
-  EXPECT_GT(error, 16.0 * kDegree);
+  EXPECT_GT(error, 16.0 * kOneDegree);
   EXPECT_LT(error, 1.5 * state.tiltSigma());
 }
 
