@@ -155,5 +155,6 @@ if(benchmark_FOUND)
   if(opengv_FOUND AND MULTICAM_EGOMOTION_EIGEN_ALIGNMENT EQUAL 16)
     target_sources(solver_benchmark PRIVATE test/benchmark/opengv_solvers.cpp)
     target_link_libraries(solver_benchmark opengv)
+    set_target_properties(solver_benchmark PROPERTIES UNITY_BUILD OFF)  # each file names its problems alike
   endif()
 endif()

@@ -20,6 +20,7 @@ constexpr double kLeastThreshold = 0.25;  // of the marginalizing score, as a sh
 constexpr double kProbeWidths[] = {4.0, 2.0};
 constexpr int kFullSteps = 2;
 constexpr int kLastRounds = 3;
+constexpr double kLeastKept = 0.9;  // share of the inliers that a refinement keeps
 constexpr double kDamping = 1e-3;
 // A model is not scored further when its loss over the probe exceeds that of the best by more standard deviations than
 // chance would give a model as good; the spread of a sum of n losses in [0, 1] is at most sqrt(n) / 2.
@@ -112,7 +113,14 @@ double samplesNeeded(double inlier_share, int sample_size, double success_probab
   return std::log1p(-success_probability) / std::log1p(-all_inliers);
 }
 
-// Last refinement, of which the first round may find the inliers farther away.
+int inliersOf(const CorrespondenceSet::Residuals& residuals, double limit) {
+  return static_cast<int>(
+      std::count_if(residuals.errors.begin(), residuals.errors.end(), [&](double e) { return e < limit; }));
+}
+
+// Last refinement, of which the first round may find the inliers farther away. Errors do not tell on which side of a
+// baseline the points lie: where they leave its length open, as without motion, a step may turn it over and all its
+// points come to lie behind the cameras. Such a step is not taken.
 void refineLast(const CorrespondenceSet& set, const MotionPriors& priors, const RobustEstimatorOptions& options,
                 RobustEstimate* result) {
   const double limit = options.max_epipolar_error_px;
@@ -121,15 +129,27 @@ void refineLast(const CorrespondenceSet& set, const MotionPriors& priors, const 
   estimate.t = result->t;
   CorrespondenceSet::Residuals residuals;
   std::vector<double> weights;
+  set.evaluate(estimate.R, estimate.t, limit, &residuals);
   for (int round = 0; round < kLastRounds; ++round) {
-    set.evaluate(estimate.R, estimate.t, limit, &residuals);
+    const int inliers = inliersOf(residuals, limit);
     if (round == 0) {
       weighInliers(residuals, 0.5 * limit, 2.0 * limit, &weights);
     } else {
       weighInliers(residuals, estimate.pixel_sigma, limit, &weights);
     }
-    estimate = refineTwoView(set.weightedBlocks(weights), priors, options.refinement, limit, estimate);
-    if (!estimate.success) return;
+    const RayBlocks<double> blocks = set.weightedBlocks(weights);
+    TwoViewEstimate refined = refineTwoView(blocks, priors, options.refinement, limit, estimate);
+    if (!refined.success) return;
+    set.evaluate(refined.R, refined.t, limit, &residuals);
+    const bool turned_over = inliersOf(residuals, limit) < kLeastKept * inliers;
+    if (turned_over) {
+      TwoViewRefinementOptions covariance_only = options.refinement;
+      covariance_only.max_iterations = 0;
+      refined = refineTwoView(blocks, priors, covariance_only, limit, estimate);
+      if (!refined.success) return;
+    }
+    estimate = refined;
+    if (turned_over) break;
   }
   result->R = estimate.R;
   result->t = estimate.t;
@@ -174,9 +194,8 @@ RobustEstimate estimateRobustly(const CorrespondenceSet& set, int sample_size, c
       if (!(model.score < best.score)) continue;
       best = model;
       set.evaluate(best.R, best.t, limit, &residuals);
-      const double inliers =
-          std::count_if(residuals.errors.begin(), residuals.errors.end(), [&](double e) { return e < limit; });
-      needed = samplesNeeded(inliers / set.size(), sample_size, options.success_probability);
+      const double share = static_cast<double>(inliersOf(residuals, limit)) / set.size();
+      needed = samplesNeeded(share, sample_size, options.success_probability);
     }
   }
   if (!std::isfinite(best.score)) return result;

@@ -79,6 +79,29 @@ TEST(RobustEstimator, InliersAreTheTrueOnes) {
   EXPECT_LT(wrong, 0.05 * true_inliers);  // those that lie on the epipolar line by chance
 }
 
+// Without motion nothing tells how far the body has moved along the stereo baseline, but all points lie in front.
+TEST(RobustEstimator, RestLosesNoInliers) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const Eigen::Vector3d tremble(2e-5, -1e-5, 1e-5);
+    CorrespondenceScene scene = makeCorrespondenceScene(stereoShape(), tremble, tremble, 300, 0.1, 0.0, seed);
+    // From frame to frame a patch keeps its error; between the cameras it does not.
+    std::mt19937 random(seed);
+    std::normal_distribution<double> change(0.0, 2e-5);
+    for (CorrespondenceSet::Entry& entry : scene.entries) {
+      if (entry.rays.camera1 != entry.rays.camera2) continue;
+      const Eigen::Vector3d changed(change(random), change(random), change(random));
+      entry.rays.second =
+          makeRay((scene.R * entry.rays.first.direction + changed).normalized(), scene.centers[entry.rays.camera2]);
+    }
+    MotionPriors prior;
+    prior.rotation = {scene.R, Eigen::Matrix3d::Identity() / (5e-4 * 5e-4)};
+    const RobustEstimate found =
+        estimate<Vertical>(scene.set(), verticalOf(scene, Eigen::Vector3d::Zero()), prior, {}, seed);
+    EXPECT_TRUE(found.success && found.covariance.allFinite()) << seed;
+    EXPECT_GT(found.inlier_count, 0.9 * scene.entries.size()) << seed;
+  }
+}
+
 TEST(RobustEstimator, MetricScaleComesWithOverlap) {
   int good = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
