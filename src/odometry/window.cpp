@@ -10,6 +10,7 @@
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/landmark_distance.h"
 #include "multicam_egomotion/odometry/window_marginals.h"
+#include "multicam_egomotion/odometry/window_scale.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -249,11 +250,14 @@ void Window::optimize(WindowEstimate* estimate) {
 bool Window::solve(WindowEstimate* estimate) {
   std::vector<TrackId> tracks;
   BundleAdjustment bundle = makeBundle(&tracks);
-  const BundleSummary summary = bundle.solve(options_.bundle);
+  BundleSummary summary = bundle.solve(options_.bundle);
   if (!summary.finite) return false;
+  const bool from_the_start = prior_.poses.size() == 1;  // nothing has been marginalized
+  if (from_the_start && !newcomers_wait_) findScale(options_.bundle, &bundle, &summary);
   for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
   for (std::size_t l = 0; l < tracks.size(); ++l) {
     BundleLandmark& landmark = landmarks_[tracks[l]];
+    landmark.origin = bundle.landmarks[l].origin;
     landmark.direction = bundle.landmarks[l].direction;
     landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
   }

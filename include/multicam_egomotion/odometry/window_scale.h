@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "multicam_egomotion/estimation/bundle_adjustment.h"
+
+namespace multicam_egomotion {
+
+/// Tries other scales of all motion and points of an adjustment that has been solved, and takes over what fits better.
+/// Cameras without overlap see the scale only through rotation: steps of the adjustment along it are short, and from a
+/// start that is far off they end long before it is found. Nothing is tried where cameras overlap.
+void findScale(const BundleOptions& options, BundleAdjustment* bundle, BundleSummary* summary);
+
+}  // namespace multicam_egomotion
