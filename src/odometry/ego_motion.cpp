@@ -34,14 +34,12 @@ constexpr double kSureSigmas = 3.0;            // of a predicted displacement th
 constexpr double kSureDisplacement = 0.02;     // if it is this long as well [m]
 constexpr double kSettledTilt = 0.0175;        // sigma of the vertical from which odom is settled: 1 deg [rad]
 constexpr double kMaxSettling = 2.0;           // settled after that in any case [s]
-// Sigmas by which the attitude may differ from the vertical while it settles, later one: noise shall not bend the path.
-constexpr double kSettlingTolerance = 0.6;
-constexpr double kFewInliers = 0.5;        // share of the tracks below which the gyroscope may be wrong
-constexpr double kManyMore = 1.5;          // times the inliers without the gyroscope, if it is
-constexpr double kDoubtedRotation = 0.35;  // sigma of its rotation then [rad]
-constexpr double kPoorScale = 0.05;        // sigma of the scale above which its error lasts
-constexpr double kRefusedShare = 0.4;      // of the displacements seen, if accelerometer and images disagree
-constexpr double kImuHistory = 3.0;        // kept before the newest frame [s]
+constexpr double kFewInliers = 0.5;            // share of the tracks below which the gyroscope may be wrong
+constexpr double kManyMore = 1.5;              // times the inliers without the gyroscope, if it is
+constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
+constexpr double kPoorScale = 0.05;            // sigma of the scale above which its error lasts
+constexpr double kRefusedShare = 0.4;          // of the displacements seen, if accelerometer and images disagree
+constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
@@ -344,8 +342,7 @@ class EgoMotion::Impl {
   void followVertical(const Eigen::Vector3d& window_position, double dt) {
     settled_ =
         settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
-    const double tolerance = (settled_ ? 1.0 : kSettlingTolerance) * motion_->tiltSigma();
-    Eigen::Matrix3d turn = tiltCorrection(published_.pose().linear(), motion_->up(), tolerance);
+    Eigen::Matrix3d turn = tiltCorrection(published_.pose().linear(), motion_->up(), motion_->tiltSigma());
     if (settled_) turn = slowed(turn, options_.max_tilt_correction_rate, dt);
     published_.turn(turn);
     window_.rotateAbout(window_position, turn);
