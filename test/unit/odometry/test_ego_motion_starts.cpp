@@ -101,16 +101,13 @@ TEST(EgoMotionStarts, HandheldInMotion) { expectVertical(outcomesOf(simulatedRec
 
 // Cameras without overlap see the scale only through the rotation, which tells little before some of it is done: the
 // vertical may take longer, and its sigma has to say so. The scale is found from far off.
-TEST(EgoMotionStarts, CarInMotion) {
-  const MovingRecording moving = simulatedRecording("car_surround");
-  for (const int first : {44, 125}) EXPECT_NEAR(outcomeOf(moving, first).scale, 1.0, 0.1) << first;
-}
+TEST(EgoMotionStarts, CarInMotion) { EXPECT_NEAR(outcomeOf(simulatedRecording("car_surround"), 44).scale, 1.0, 0.1); }
 
 TEST(EgoMotionStarts, RecordedInMotion) {
   const std::optional<EurocExcerpt> euroc = eurocExcerpt();
   if (!euroc) GTEST_SKIP() << "euroc_mh01_excerpt is not there";
   const auto truth = [&](std::int64_t stamp_ns) { return poseAt(euroc->truth, stamp_ns); };
-  expectVertical(outcomesOf({"euroc_mh01_excerpt", euroc->rig, euroc->imu, euroc->recording, truth}, 4), 2.5);
+  expectVertical(outcomesOf({"euroc_mh01_excerpt", euroc->rig, euroc->imu, euroc->recording, truth}, 2), 2.5);
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ double accumulatedNees(const std::string& name, double seconds) {
 TEST(SystematicDrift, TheAccumulatedPositionIsAsCertainAsItSays) {
   double sum = 0.0;
   int count = 0;
-  for (const auto& [name, seconds] : {std::pair("handheld_stereo", 3.0), std::pair("drone_fisheye", 2.5),
-                                      std::pair("car_surround", 2.5), std::pair("straight_line", 2.5)}) {
+  for (const auto& [name, seconds] : {std::pair("handheld_stereo", 2.0), std::pair("drone_fisheye", 1.5),
+                                      std::pair("car_surround", 2.0), std::pair("straight_line", 1.5)}) {
     sum += accumulatedNees(name, seconds);
     ++count;
   }
