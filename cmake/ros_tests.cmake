@@ -57,14 +57,13 @@ add_test(NAME recording_simulated COMMAND egomotion_sim handheld_stereo ${simula
 set_tests_properties(recording_simulated PROPERTIES FIXTURES_SETUP simulated TIMEOUT 300 COST 200)
 add_ros_test(replay_simulated replay.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml max_error:=0.05)
 add_ros_test(topics_only topics_only.test bag:=${simulated}.bag)
-add_ros_test(bad_configuration bad_configuration.test rig:=${simulated}.rig.yaml)
 add_ros_test(bag_loop bag_loop.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
 add_ros_test(nodelet_manager nodelet_manager.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
 add_ros_test(live_faults live_faults.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
 set_tests_properties(rostest_live_faults PROPERTIES TIMEOUT 600)  # with as many signals as one likes
 add_test(NAME test_egomotion_bag COMMAND ${PYTHON_EXECUTABLE}
   ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_egomotion_bag.py $<TARGET_FILE:egomotion_bag> ${simulated})
-set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bad_configuration rostest_bag_loop
+set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bag_loop
   rostest_nodelet_manager rostest_live_faults test_egomotion_bag PROPERTIES FIXTURES_REQUIRED simulated)
 
 # A real one, where the data are.
