@@ -27,7 +27,7 @@ set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMA
 foreach(recording simulated recorded)
   add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 600 COST 50 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 2400 COST 50 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
 endforeach()
 add_dependencies(tests test_fault_table)
 
