@@ -45,6 +45,24 @@ TEST(PolynomialRoots, FindsAllOfSixRealRoots) {
     EXPECT_NEAR(found[i], expected[i], 1e-12 * std::max(1.0, std::abs(found[i])));
 }
 
+// At s = 1 and -1, where s and 1 / s meet, rounding decides on which side a root lies.
+TEST(PolynomialRoots, FindsRootsWhereTheChartsMeet) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double end = trial % 2 ? 1.0 : -1.0;
+    std::vector<double> expected = {end};
+    while (expected.size() < 4) {
+      const double other = std::tan(normal(random));
+      if (std::abs(other - end) > 0.1) expected.push_back(other);
+    }
+    const std::vector<double> found = finite(findRealRoots(expand(expected, normal(random), 1.0)));
+    double nearest = 1.0;
+    for (double root : found) nearest = std::min(nearest, std::abs(root - end));
+    EXPECT_LT(nearest, 1e-10) << trial;
+  }
+}
+
 TEST(PolynomialRoots, FindsRandomRootsWithTheirTrueNumber) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
