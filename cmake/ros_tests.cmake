@@ -24,10 +24,15 @@ target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_eg
   multicam_egomotion_simulator GTest::GTest GTest::Main)
 precompile_headers(ros_libraries test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
+set(fault_table_timeout 600)
+if(MULTICAM_EGOMOTION_SANITIZE)
+  set(fault_table_timeout 2400)
+endif()
 foreach(recording simulated recorded)
   add_test(NAME test_fault_table_${recording} COMMAND test_fault_table --gtest_filter=${recording}/*
     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT 2400 COST 50 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  set_tests_properties(test_fault_table_${recording} PROPERTIES TIMEOUT ${fault_table_timeout} COST 50
+    SKIP_REGULAR_EXPRESSION "  SKIPPED ")
 endforeach()
 add_dependencies(tests test_fault_table)
 

@@ -9,6 +9,8 @@ namespace multicam_egomotion {
 /// Tries other scales of all motion and points of an adjustment that has been solved, and takes over what fits better.
 /// Cameras without overlap see the scale only through rotation: steps of the adjustment along it are short, and from a
 /// start that is far off they end long before it is found. Nothing is tried where cameras overlap.
+/// `bundle`: poses and points in odom, scaled about the first pose; `summary`: of its last solution. Both stay as they
+/// are where no other scale fits better.
 void findScale(const BundleOptions& options, BundleAdjustment* bundle, BundleSummary* summary);
 
 }  // namespace multicam_egomotion

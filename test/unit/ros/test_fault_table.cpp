@@ -89,8 +89,8 @@ void expectSameBefore(const FaultRow& row, const TrueRecording& recording, const
 
 void expectSameAccuracyAfter(const FaultRow& row, const TrueRecording& recording,
                              const std::vector<JudgedPose>& poses) {
-  const double begin = row.end_s + (row.odom_epochs > 1 ? kVertical : kSettling),
-               end = recording.since(recording.image_stamps_ns.back());
+  const double begin = row.end_s + (row.odom_epochs > 1 ? kVertical : kSettling);
+  const double end = recording.since(recording.image_stamps_ns.back());
   const Drift clean = driftBetween(judgedPoses(recording, recording.clean, 0.0, 0.0), begin, end);
   const Drift drift = driftBetween(poses, begin, end);
   EXPECT_GE(drift.poses, 2);
