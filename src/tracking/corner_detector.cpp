@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -13,11 +14,12 @@ namespace {
 constexpr int kFeaturesPerCell = 2;
 // Cells with much texture may take more when others have none.
 constexpr int kMaxFeaturesPerCell = 4;
-constexpr int kMaxCandidatesPerCell = 12;
+constexpr std::size_t kMaxCandidatesPerCell = 12;
 // A cell that had nothing to offer is left alone for so many frames while the image is well covered.
 constexpr int kRest = 3;
 constexpr int kScoreRadius = 3;
 constexpr int kFastRadius = 3;
+constexpr double kGroups = 8;  // of cells that are searched at the same time
 
 // Smaller eigenvalue of the structure tensor, mean over the window; central differences.
 float cornerScore(const cv::Mat& image, const cv::Point& point) {
@@ -64,6 +66,38 @@ void CornerDetector::occupy(const cv::Point& point) {
   free_(square & cv::Rect({0, 0}, image_size_)).setTo(0);
 }
 
+std::vector<CornerDetector::Candidate> CornerDetector::candidatesIn(const cv::Mat& image, int cell,
+                                                                    const cv::Rect& inner) const {
+  const int column = cell % columns_;
+  const int row = cell / columns_;
+  const int x0 = column * image_size_.width / columns_;
+  const int y0 = row * image_size_.height / rows_;
+  const cv::Rect area =
+      cv::Rect(x0, y0, (column + 1) * image_size_.width / columns_ - x0, (row + 1) * image_size_.height / rows_ - y0) &
+      inner;
+  if (area.empty()) return {};
+  const cv::Rect padded = cv::Rect(area.x - kFastRadius, area.y - kFastRadius, area.width + 2 * kFastRadius,
+                                   area.height + 2 * kFastRadius) &
+                          cv::Rect({0, 0}, image_size_);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::FAST(image(padded), keypoints, options_.fast_threshold, true);
+  const auto ranked = [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
+    if (a.response != b.response) return a.response > b.response;
+    return a.pt.y != b.pt.y ? a.pt.y < b.pt.y : a.pt.x < b.pt.x;
+  };
+  std::sort(keypoints.begin(), keypoints.end(), ranked);
+  std::vector<Candidate> candidates;
+  for (const cv::KeyPoint& keypoint : keypoints) {
+    const cv::Point point(cvRound(keypoint.pt.x) + padded.x, cvRound(keypoint.pt.y) + padded.y);
+    if (!area.contains(point) || free_.at<uchar>(point) == 0) continue;
+    const float score = cornerScore(image, point);
+    if (score < options_.min_eigenvalue) continue;
+    candidates.push_back({point, score, cell});
+    if (candidates.size() == kMaxCandidatesPerCell) break;
+  }
+  return candidates;
+}
+
 std::vector<cv::Point2f> CornerDetector::detect(const cv::Mat& image, const cv::Mat& mask,
                                                 const std::vector<cv::Point2f>& occupied) {
   if (static_cast<int>(occupied.size()) >= options_.features) return {};
@@ -81,8 +115,7 @@ std::vector<cv::Point2f> CornerDetector::detect(const cv::Mat& image, const cv::
   const int border = std::max(options_.border_px, kScoreRadius + 1);
   const cv::Rect inner(border, border, image_size_.width - 2 * border, image_size_.height - 2 * border);
   const bool well_covered = 3 * static_cast<int>(occupied.size()) > 2 * options_.features;
-  std::vector<Candidate> candidates;
-  std::vector<cv::KeyPoint> keypoints;
+  std::vector<int> cells;
   for (int cell = 0; cell < columns_ * rows_; ++cell) {
     if (count[cell] >= kFeaturesPerCell) continue;
     if (well_covered && rest_[cell] > 0) {
@@ -90,34 +123,17 @@ std::vector<cv::Point2f> CornerDetector::detect(const cv::Mat& image, const cv::
       continue;
     }
     rest_[cell] = kRest;
-    const int column = cell % columns_;
-    const int row = cell / columns_;
-    const int x0 = column * image_size_.width / columns_;
-    const int y0 = row * image_size_.height / rows_;
-    const cv::Rect area = cv::Rect(x0, y0, (column + 1) * image_size_.width / columns_ - x0,
-                                   (row + 1) * image_size_.height / rows_ - y0) &
-                          inner;
-    if (area.empty()) continue;
-    const cv::Rect padded = cv::Rect(area.x - kFastRadius, area.y - kFastRadius, area.width + 2 * kFastRadius,
-                                     area.height + 2 * kFastRadius) &
-                            cv::Rect({0, 0}, image_size_);
-    keypoints.clear();
-    cv::FAST(image(padded), keypoints, options_.fast_threshold, true);
-    const auto ranked = [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
-      if (a.response != b.response) return a.response > b.response;
-      return a.pt.y != b.pt.y ? a.pt.y < b.pt.y : a.pt.x < b.pt.x;
-    };
-    std::sort(keypoints.begin(), keypoints.end(), ranked);
-    int kept = 0;
-    for (const cv::KeyPoint& keypoint : keypoints) {
-      const cv::Point point(cvRound(keypoint.pt.x) + padded.x, cvRound(keypoint.pt.y) + padded.y);
-      if (!area.contains(point) || free_.at<uchar>(point) == 0) continue;
-      const float score = cornerScore(image, point);
-      if (score < options_.min_eigenvalue) continue;
-      candidates.push_back({point, score, cell});
-      if (++kept == kMaxCandidatesPerCell) break;
-    }
+    cells.push_back(cell);
   }
+  std::vector<std::vector<Candidate>> found(cells.size());
+  cv::parallel_for_(
+      cv::Range(0, static_cast<int>(cells.size())),
+      [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; ++i) found[i] = candidatesIn(image, cells[i], inner);
+      },
+      kGroups);
+  std::vector<Candidate> candidates;
+  for (const auto& one : found) candidates.insert(candidates.end(), one.begin(), one.end());
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
 

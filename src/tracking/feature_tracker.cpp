@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <mutex>
+#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -24,6 +26,16 @@ constexpr std::uint64_t kSearchPeriod = 5;
 constexpr double kGoodPredictionPx = 4.0;
 constexpr int kFewLevels = 2;
 constexpr std::size_t kMinPredictionErrors = 10;
+// Features are matched across cameras in so many groups at the same time.
+constexpr double kMatchingGroups = 16;
+
+void add(const FeatureTrackerCounters& more, FeatureTrackerCounters* counters) {
+  counters->tracked += more.tracked;
+  counters->rejected_forward_backward += more.rejected_forward_backward;
+  counters->reference_aligned += more.reference_aligned;
+  counters->cross_camera_matches += more.cross_camera_matches;
+  counters->rejected_epipolar += more.rejected_epipolar;
+}
 
 }  // namespace
 
@@ -132,17 +144,34 @@ class FeatureTracker::Impl {
     }
   }
 
+  // Runs work(0, ...) ... work(count - 1, ...) in `groups` at the same time; each writes only what is its own, and
+  // counts for itself. OpenCV's loops inside stay on the thread that calls them: they are too short to be shared out.
+  template <typename Work>
+  void atOnce(int count, double groups, const Work& work) {
+    std::mutex mutex;
+    const auto run = [&](const cv::Range& range) {
+      FeatureTrackerCounters counters;
+      for (int i = range.start; i < range.end; ++i) work(i, &counters);
+      const std::lock_guard<std::mutex> lock(mutex);
+      add(counters, &counters_);
+    };
+    cv::parallel_for_(cv::Range(0, count), run, groups);
+  }
+
   void takeImages(const FrameSet& frames) {
-    current_.assign(rig_.size(), FlowPyramid());
+    std::vector<const CameraImage*> taken(rig_.size(), nullptr);
     for (const CameraImage& image : frames.images) {
-      const bool known = image.camera >= 0 && image.camera < rig_.size() && current_[image.camera].empty();
+      const bool known = image.camera >= 0 && image.camera < rig_.size() && !taken[image.camera];
       if (!known || image.grey.type() != CV_8UC1 || image.grey.cols != rig_.camera(image.camera).model.width() ||
           image.grey.rows != rig_.camera(image.camera).model.height()) {
         ++counters_.ignored_images;
         continue;
       }
-      current_[image.camera] = FlowPyramid(image.grey, flow_);
+      taken[image.camera] = &image;
     }
+    atOnce(rig_.size(), rig_.size(), [&](int camera, FeatureTrackerCounters*) {
+      current_[camera] = taken[camera] ? FlowPyramid(taken[camera]->grey, flow_) : FlowPyramid();
+    });
   }
 
   bool usable(int camera, const Eigen::Vector2d& pixel) const {
@@ -159,74 +188,72 @@ class FeatureTracker::Impl {
   void trackInTime() {
     for (Feature& feature : features_) feature.alive = false;
     for (auto& errors : prediction_errors_) errors.clear();
-    std::vector<Feature*> group;
-    for (int camera = 0; camera < rig_.size(); ++camera) {
-      group.clear();
-      for (Feature& feature : features_) {
-        if (feature.owner == camera) group.push_back(&feature);
-      }
-      trackIn(camera, group);
-    }
+    std::vector<std::vector<Feature*>> owned(rig_.size());
+    for (Feature& feature : features_) owned[feature.owner].push_back(&feature);
+    atOnce(rig_.size(), rig_.size(),
+           [&](int camera, FeatureTrackerCounters* counters) { trackIn(camera, owned[camera], counters); });
     // What its camera lost may live on in another that saw it.
+    std::vector<Feature*> group;
     for (int camera = 0; camera < rig_.size(); ++camera) {
       group.clear();
       for (Feature& feature : features_) {
         if (!feature.alive && feature.owner != camera && feature.seen[camera]) group.push_back(&feature);
       }
-      counters_.handed_over += trackIn(camera, group);
+      counters_.handed_over += trackIn(camera, group, &counters_);
     }
     updatePredictionErrors();
   }
 
   // Tracks features of one camera from the previous frame and makes it their owner; returns how many succeeded.
-  int trackIn(int camera, std::vector<Feature*> group) {
+  int trackIn(int camera, std::vector<Feature*> group, FeatureTrackerCounters* counters) {
     if (group.empty() || previous_[camera].empty() || current_[camera].empty()) return 0;
     const bool few_levels = max_prediction_error_[camera] < kGoodPredictionPx;
-    int tracked = flowIn(camera, few_levels ? std::min(kFewLevels, flow_.pyramid_levels) : flow_.pyramid_levels, group);
+    const int levels = few_levels ? std::min(kFewLevels, flow_.pyramid_levels) : flow_.pyramid_levels;
+    int tracked = flowIn(camera, levels, group, counters);
     if (few_levels) {
       group.erase(std::remove_if(group.begin(), group.end(), [](const Feature* f) { return f->alive; }), group.end());
-      tracked += flowIn(camera, flow_.pyramid_levels, group);
+      tracked += flowIn(camera, flow_.pyramid_levels, group, counters);
     }
-    counters_.tracked += tracked;
+    counters->tracked += tracked;
     return tracked;
   }
 
-  int flowIn(int camera, int levels, const std::vector<Feature*>& group) {
-    origins_.clear();
-    guesses_.clear();
+  int flowIn(int camera, int levels, const std::vector<Feature*>& group, FeatureTrackerCounters* counters) {
+    std::vector<cv::Point2f> origins, guesses;
+    std::vector<unsigned char> found;
     const Eigen::Isometry3d T_cur_prev = motion(camera);
     for (const Feature* feature : group) {
       const Eigen::Vector2d& pixel = feature->points[camera].pixel;
       const Eigen::Vector2d guess = predict(camera, T_cur_prev, *feature);
-      origins_.emplace_back(pixel.x(), pixel.y());
-      guesses_.emplace_back(guess.x(), guess.y());
+      origins.emplace_back(pixel.x(), pixel.y());
+      guesses.emplace_back(guess.x(), guess.y());
     }
-    flowed_ = guesses_;
-    flowForward(previous_[camera], current_[camera], flow_, levels, origins_, &flowed_, &found_);
+    std::vector<cv::Point2f> flowed = guesses;
+    flowForward(previous_[camera], current_[camera], flow_, levels, origins, &flowed, &found);
 
     // Alignment to the reference vouches for a track; only without it the way back is worth its time.
     std::vector<Feature*> unaligned;
     std::vector<cv::Point2f> unaligned_origins, unaligned_points;
     int tracked = 0;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      if (!found_[i]) continue;
+      if (!found[i]) continue;
       Feature& feature = *group[i];
-      Eigen::Vector2d pixel(flowed_[i].x, flowed_[i].y);
+      Eigen::Vector2d pixel(flowed[i].x, flowed[i].y);
       if (feature.owner != camera) cutReference(previous_[camera], feature.points[camera].pixel, &feature);
-      if (!alignToReference(camera, &feature, &pixel)) {
+      if (!alignToReference(camera, &feature, &pixel, counters)) {
         unaligned.push_back(&feature);
-        unaligned_origins.push_back(origins_[i]);
-        unaligned_points.push_back(flowed_[i]);
+        unaligned_origins.push_back(origins[i]);
+        unaligned_points.push_back(flowed[i]);
       } else if (advance(camera, pixel, T_cur_prev, &feature)) {
-        prediction_errors_[camera].push_back(static_cast<float>(cv::norm(flowed_[i] - guesses_[i])));
+        prediction_errors_[camera].push_back(static_cast<float>(cv::norm(flowed[i] - guesses[i])));
         ++tracked;
       }
     }
-    flowReturns(previous_[camera], current_[camera], flow_, unaligned_origins, unaligned_points, &found_);
+    flowReturns(previous_[camera], current_[camera], flow_, unaligned_origins, unaligned_points, &found);
     for (std::size_t i = 0; i < unaligned.size(); ++i) {
       Feature& feature = *unaligned[i];
-      if (!found_[i]) {
-        ++counters_.rejected_forward_backward;
+      if (!found[i]) {
+        ++counters->rejected_forward_backward;
       } else if (advance(camera, {unaligned_points[i].x, unaligned_points[i].y}, T_cur_prev, &feature)) {
         if (!feature.reference || ++feature.reference->failures >= kMaxReferenceFailures) makeReference(&feature);
         ++tracked;
@@ -275,7 +302,7 @@ class FeatureTracker::Impl {
     }
   }
 
-  bool alignToReference(int camera, Feature* feature, Eigen::Vector2d* pixel) {
+  bool alignToReference(int camera, Feature* feature, Eigen::Vector2d* pixel, FeatureTrackerCounters* counters) {
     if (!feature->reference) return false;
     ReferencePatch& reference = *feature->reference;
     PatchAlignmentOptions alignment;
@@ -285,7 +312,7 @@ class FeatureTracker::Impl {
     reference.linear = warp.linear;
     reference.failures = 0;
     *pixel = warp.pixel;
-    ++counters_.reference_aligned;
+    ++counters->reference_aligned;
     return true;
   }
 
@@ -306,18 +333,19 @@ class FeatureTracker::Impl {
   }
 
   void matchAcrossCameras() {
-    for (Feature& feature : features_) {
-      if (!feature.alive) continue;
+    atOnce(static_cast<int>(features_.size()), kMatchingGroups, [&](int i, FeatureTrackerCounters* counters) {
+      Feature& feature = features_[i];
+      if (!feature.alive) return;
       for (int camera = 0; camera < rig_.size(); ++camera) {
         if (camera == feature.owner) continue;
         const bool was_seen = std::exchange(feature.seen[camera], false);
-        matchInto(camera, was_seen, &feature);
-        if (was_seen && !feature.seen[camera]) ++counters_.rejected_epipolar;
+        matchInto(camera, was_seen, &feature, counters);
+        if (was_seen && !feature.seen[camera]) ++counters->rejected_epipolar;
       }
-    }
+    });
   }
 
-  void matchInto(int camera, bool was_seen, Feature* feature) {
+  void matchInto(int camera, bool was_seen, Feature* feature, FeatureTrackerCounters* counters) {
     const auto& overlapping = rig_.overlappingCameras(feature->owner);
     if (current_[camera].empty() || std::find(overlapping.begin(), overlapping.end(), camera) == overlapping.end()) {
       return;
@@ -336,7 +364,7 @@ class FeatureTracker::Impl {
     feature->seen[camera] = true;
     feature->points[camera] = match->point;
     feature->inverse_distance = match->inverse_distance;
-    ++counters_.cross_camera_matches;
+    ++counters->cross_camera_matches;
   }
 
   void dropDead() {
@@ -369,7 +397,7 @@ class FeatureTracker::Impl {
     feature.id = next_id_++;
     feature.seen[camera] = true;
     makeReference(&feature);
-    for (const int other : rig_.overlappingCameras(camera)) matchInto(other, true, &feature);
+    for (const int other : rig_.overlappingCameras(camera)) matchInto(other, true, &feature, &counters_);
     ++counters_.detected;
     features_.push_back(std::move(feature));
   }
@@ -406,8 +434,6 @@ class FeatureTracker::Impl {
   // Error [px] that 9 of 10 predictions of the last frame stayed within, by camera.
   std::vector<double> max_prediction_error_;
   std::vector<std::vector<float>> prediction_errors_;
-  std::vector<cv::Point2f> origins_, guesses_, flowed_;
-  std::vector<unsigned char> found_;
 };
 
 FeatureTracker::FeatureTracker(const CameraRig& rig, const FeatureTrackerOptions& options)

@@ -35,6 +35,7 @@ class CornerDetector {
 
   int cellOf(const cv::Point2f& point) const;
   void occupy(const cv::Point& point);
+  std::vector<Candidate> candidatesIn(const cv::Mat& image, int cell, const cv::Rect& inner) const;
 
   CornerDetectorOptions options_;
   cv::Size image_size_;

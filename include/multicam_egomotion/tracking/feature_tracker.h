@@ -33,7 +33,8 @@ struct FeatureTrackerCounters {
 /// A feature belongs to one camera, in which it is tracked from frame to frame by pyramidal Lucas-Kanade (Bouguet 2001)
 /// from a predicted position and then aligned to its reference patch, so that it does not drift; in each frame it is
 /// matched from there into the overlapping cameras. When it leaves its camera it lives on in one of those.
-/// Deterministic; never throws on images.
+/// Cameras are worked on at the same time (cv::parallel_for_). Deterministic on any number of threads; never throws on
+/// images.
 class FeatureTracker {
  public:
   /// Throws std::invalid_argument (name, found, expected) on options that cannot be.
