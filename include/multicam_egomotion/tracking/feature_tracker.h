@@ -3,30 +3,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "multicam_egomotion/geometry/camera_rig.h"
+#include "multicam_egomotion/tracking/feature_tracker_counters.h"
 #include "multicam_egomotion/tracking/feature_tracker_options.h"
 #include "multicam_egomotion/tracking/frame_set.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
-
-/// What happened to the features in the last frame, and faults of the images since the start.
-struct FeatureTrackerCounters {
-  int tracked = 0;                    ///< features carried over from the previous frame
-  int detected = 0;                   ///< new features
-  int lost = 0;                       ///< features that ended
-  int handed_over = 0;                ///< features that left one camera and live on in another
-  int rejected_forward_backward = 0;  ///< temporal tracks that did not come back to where they started
-  int reference_aligned = 0;          ///< tracked features aligned to their reference patch, hence without drift
-  int cross_camera_matches = 0;       ///< observations of features by a second camera
-  int rejected_epipolar = 0;          ///< earlier matches between cameras that failed in this frame
-  std::uint64_t ignored_images = 0;   ///< unknown camera, repeated camera, wrong size or type; since the start
-};
 
 /// Corner features of all cameras of a rig, tracked in time and across overlapping cameras.
 ///
