@@ -141,17 +141,17 @@ void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& opti
       Eigen::Matrix<double, 2, 6> d_pose;
       d_pose.leftCols<3>() = -landmark.inverse_distance * d_x;
       d_pose.rightCols<3>() = d_x * skew(from_body);
-      Eigen::Matrix<double, 2, 3> d_landmark;
-      d_landmark.leftCols<2>() = d_x * (pose.R.transpose() * tangent);
-      d_landmark.col(2) = d_x * (pose.R.transpose() * (landmark.origin - pose.p) - observation.center);
-
-      landmark_H.noalias() += weight * d_landmark.transpose() * d_landmark;
-      landmark_b.noalias() -= weight * d_landmark.transpose() * residual;
       const int row = 6 * observation.pose;
       H->block<6, 6>(row, row).noalias() += weight * d_pose.transpose() * d_pose;
       b->segment<6>(row).noalias() -= weight * d_pose.transpose() * residual;
-
       if (options.fix_landmarks) continue;
+
+      Eigen::Matrix<double, 2, 3> d_landmark;
+      d_landmark.leftCols<2>() = d_x * (pose.R.transpose() * tangent);
+      d_landmark.col(2) = d_x * (pose.R.transpose() * (landmark.origin - pose.p) - observation.center);
+      landmark_H.noalias() += weight * d_landmark.transpose() * d_landmark;
+      landmark_b.noalias() -= weight * d_landmark.transpose() * residual;
+
       Coupling* coupling = nullptr;
       for (int c = 0; c < block.coupling_count; ++c) {
         Coupling& candidate = couplings_[block.first_coupling + c];

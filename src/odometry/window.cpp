@@ -109,17 +109,19 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
   return bundle;
 }
 
-// Refines the newest pose alone against the landmarks as they are; returns the robust cost.
-double Window::alignNewest(BundlePose* pose) const {
+// The newest pose alone, refined against the landmarks as they are from each guess of the motion; the one that fits
+// best.
+BundlePose Window::alignedNewest(const std::vector<Eigen::Isometry3d>& guesses) const {
   const int newest = static_cast<int>(states_.size()) - 1;
   BundleAdjustment bundle;
-  bundle.poses = {*pose};
   bundle.pixel_sigma = noise_.pixelSigma();
   int views = 0;
   for (const auto& [track, landmark] : landmarks_) {
     if (landmark.inverse_distance == 0.0 || landmark.observations.front().pose == newest) continue;
-    BundleLandmark seen = landmark;
-    seen.observations.clear();
+    BundleLandmark seen;
+    seen.origin = landmark.origin;
+    seen.direction = landmark.direction;
+    seen.inverse_distance = landmark.inverse_distance;
     for (const BundleObservation& observation : landmark.observations) {
       if (observation.pose != newest) continue;
       seen.observations.push_back(observation);
@@ -128,12 +130,21 @@ double Window::alignNewest(BundlePose* pose) const {
     }
     bundle.landmarks.push_back(std::move(seen));
   }
-  if (views < kMinLandmarks) return 0.0;
+  const Eigen::Isometry3d T_odom_previous = toIsometry(states_[newest - 1].pose);
+  const bool enough = views >= kMinLandmarks;
   BundleOptions options = options_.bundle;
   options.fix_landmarks = true;
-  const BundleSummary summary = bundle.solve(options);
-  *pose = bundle.poses[0];
-  return summary.cost;
+  double best_cost = std::numeric_limits<double>::infinity();
+  BundlePose best = states_.back().pose;
+  for (const Eigen::Isometry3d& guess : guesses) {
+    bundle.poses = {toBundle(T_odom_previous * guess)};
+    const double cost = enough ? bundle.solve(options).cost : 0.0;
+    if (cost < best_cost) {
+      best_cost = cost;
+      best = bundle.poses[0];
+    }
+  }
+  return best;
 }
 
 WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam,
@@ -156,22 +167,11 @@ WindowEstimate Window::add(const TrackedFrame& frame, const std::vector<Eigen::I
   State state;
   state.stamp_ns = frame.stamp_ns;
   state.from_previous = motion;
-  const Eigen::Isometry3d T_odom_previous = toIsometry(states_.back().pose);
-  state.pose = toBundle(T_odom_previous * motion.T_a_b);
+  state.pose = toBundle(toIsometry(states_.back().pose) * motion.T_a_b);
   states_.push_back(state);
   addObservations(frame, T_body_cam);
 
-  double best_cost = std::numeric_limits<double>::infinity();
-  BundlePose best = states_.back().pose;
-  for (const Eigen::Isometry3d& guess : guesses) {
-    BundlePose pose = toBundle(T_odom_previous * guess);
-    const double cost = alignNewest(&pose);
-    if (cost < best_cost) {
-      best_cost = cost;
-      best = pose;
-    }
-  }
-  states_.back().pose = best;
+  states_.back().pose = alignedNewest(guesses);
   newcomers_wait_ = seemsAtRest();
   initializeLandmarks();
   if (newcomers_wait_) dropMoving(&estimate);

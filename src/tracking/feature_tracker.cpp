@@ -144,7 +144,12 @@ class FeatureTracker::Impl {
       taken[image.camera] = &image;
     }
     atOnce(rig_.size(), rig_.size(), [&](int camera, FeatureTrackerCounters*) {
-      images_.current[camera] = taken[camera] ? FlowPyramid(taken[camera]->grey, temporal_.flow()) : FlowPyramid();
+      FlowPyramid& pyramid = images_.current[camera];
+      if (taken[camera]) {
+        pyramid.build(taken[camera]->grey, temporal_.flow());
+      } else {
+        pyramid.clear();
+      }
     });
   }
 

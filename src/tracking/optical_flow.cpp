@@ -17,10 +17,17 @@ cv::TermCriteria criteria(const OpticalFlowOptions& options) {
 
 }  // namespace
 
-FlowPyramid::FlowPyramid(const cv::Mat& grey, const OpticalFlowOptions& options) {
+void FlowPyramid::build(const cv::Mat& grey, const OpticalFlowOptions& options) {
   const cv::Size patch(options.patch_size_px, options.patch_size_px);
-  cv::buildOpticalFlowPyramid(grey, images_and_derivatives_, patch, options.pyramid_levels - 1, true);
+  cv::buildOpticalFlowPyramid(grey, images_and_derivatives_, patch, options.pyramid_levels - 1, true,
+                              cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT, false);
+  images_.clear();
   for (std::size_t i = 0; i < images_and_derivatives_.size(); i += 2) images_.push_back(images_and_derivatives_[i]);
+}
+
+void FlowPyramid::clear() {
+  images_and_derivatives_.clear();
+  images_.clear();
 }
 
 void flowForward(const FlowPyramid& previous, const FlowPyramid& current, const OpticalFlowOptions& options, int levels,

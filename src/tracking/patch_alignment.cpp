@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace multicam_egomotion {
 namespace {
@@ -21,6 +23,32 @@ constexpr double kLinearSigma = 0.05;
 constexpr double kLinearPrecision = kIntensityNoise * kIntensityNoise / (kLinearSigma * kLinearSigma);
 // Least curvature of the intensity along any shift, grey^2 per pixel of the patch.
 constexpr double kMinCurvature = 4.0;
+
+// Bilinear interpolation at four places inside the image.
+cv::v_float32x4 bilinear(const std::uint8_t* data, std::ptrdiff_t step, const cv::v_float32x4& u,
+                         const cv::v_float32x4& v) {
+  // Rounding may carry the outermost sample just below zero.
+  const cv::v_int32x4 zero = cv::v_setzero_s32();
+  const cv::v_int32x4 iu = cv::v_max(cv::v_trunc(u), zero), iv = cv::v_max(cv::v_trunc(v), zero);
+  int column[4], row[4];
+  cv::v_store(column, iu);
+  cv::v_store(row, iv);
+  // A pixel and its right neighbour, those of the row below in the upper half of the word.
+  const auto word = [&](int i) {
+    const std::uint8_t* p = data + row[i] * step + column[i];
+    std::uint16_t above, below;
+    std::memcpy(&above, p, 2);
+    std::memcpy(&below, p + step, 2);
+    return above | static_cast<std::uint32_t>(below) << 16;
+  };
+  const cv::v_uint32x4 four(word(0), word(1), word(2), word(3)), byte = cv::v_setall_u32(255);
+  const auto grey = [](const cv::v_uint32x4& pixel) { return cv::v_cvt_f32(cv::v_reinterpret_as_s32(pixel)); };
+  const cv::v_float32x4 left0 = grey(four & byte), right0 = grey((four >> 8) & byte);
+  const cv::v_float32x4 left1 = grey((four >> 16) & byte), right1 = grey(four >> 24);
+  const cv::v_float32x4 au = u - cv::v_cvt_f32(iu), av = v - cv::v_cvt_f32(iv);
+  const cv::v_float32x4 top = left0 + au * (right0 - left0), bottom = left1 + au * (right1 - left1);
+  return top + av * (bottom - top);
+}
 
 // Bilinear samples of a size x size grid through the warp, row by row. False when one lies outside the image.
 bool sample(const cv::Mat& image, const PatchWarp& warp, int size, float* __restrict values) {
@@ -51,8 +79,10 @@ bool sample(const cv::Mat& image, const PatchWarp& warp, int size, float* __rest
     }
     return true;
   }
-  const float cu = static_cast<float>(warp.curvature(0, 0));
-  const float cv = static_cast<float>(warp.curvature(1, 0));
+  const cv::v_float32x4 curvature_u = cv::v_setall_f32(static_cast<float>(warp.curvature(0, 0)));
+  const cv::v_float32x4 curvature_v = cv::v_setall_f32(static_cast<float>(warp.curvature(1, 0)));
+  const cv::v_float32x4 lanes(0, 1, 2, 3), last = cv::v_setall_f32(static_cast<float>(size - 1));
+  float grey[PatchTemplate::kMaxSize + 2 + 3];  // a row of the patch in whole groups of four
   for (int row = 0; row < size; ++row) {
     // A row of the patch in powers of its column.
     const double y = row - radius;
@@ -62,19 +92,13 @@ bool sample(const cv::Mat& image, const PatchWarp& warp, int size, float* __rest
     const Eigen::Vector2d first_slope = slope - 2.0 * radius * warp.curvature.col(0);
     const float u0 = static_cast<float>(start.x()), v0 = static_cast<float>(start.y());
     const float du = static_cast<float>(first_slope.x()), dv = static_cast<float>(first_slope.y());
-    for (int x = 0; x < size; ++x) {
-      const float u = u0 + (du + cu * x) * x;
-      const float v = v0 + (dv + cv * x) * x;
-      // Rounding may carry the outermost sample just below zero.
-      const int iu = std::max(0, static_cast<int>(u));
-      const int iv = std::max(0, static_cast<int>(v));
-      const float au = u - iu;
-      const float av = v - iv;
-      const std::uint8_t* p = data + iv * step + iu;
-      const float top = p[0] + au * (p[1] - p[0]);
-      const float bottom = p[step] + au * (p[step + 1] - p[step]);
-      values[x] = top + av * (bottom - top);
+    for (int x = 0; x < size; x += 4) {
+      const cv::v_float32x4 column = cv::v_min(lanes + cv::v_setall_f32(static_cast<float>(x)), last);
+      const cv::v_float32x4 u = cv::v_setall_f32(u0) + (cv::v_setall_f32(du) + curvature_u * column) * column;
+      const cv::v_float32x4 v = cv::v_setall_f32(v0) + (cv::v_setall_f32(dv) + curvature_v * column) * column;
+      cv::v_store(grey + x, bilinear(data, step, u, v));
     }
+    std::copy_n(grey, size, values);
     values += size;
   }
   return true;

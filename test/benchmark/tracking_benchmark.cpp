@@ -73,7 +73,11 @@ BENCHMARK(stereoFrame)->Arg(150)->Arg(200)->Unit(benchmark::kMillisecond);
 void pyramid(benchmark::State& state) {
   cv::setNumThreads(1);
   const cv::Mat image = view(texture(), 40);
-  for (auto _ : state) benchmark::DoNotOptimize(FlowPyramid(image, OpticalFlowOptions()));
+  FlowPyramid pyramid;
+  for (auto _ : state) {
+    pyramid.build(image, OpticalFlowOptions());
+    benchmark::DoNotOptimize(pyramid);
+  }
 }
 BENCHMARK(pyramid)->Unit(benchmark::kMillisecond);
 
@@ -91,7 +95,9 @@ void flowForwardOnly(benchmark::State& state) {
   cv::setNumThreads(1);
   const cv::Mat wall = texture();
   const OpticalFlowOptions options;
-  const FlowPyramid previous(view(wall, 40), options), current(view(wall, 40 + kStep), options);
+  FlowPyramid previous, current;
+  previous.build(view(wall, 40), options);
+  current.build(view(wall, 40 + kStep), options);
   CornerDetector detector(kSize, CornerDetectorOptions());
   const std::vector<cv::Point2f> points = detector.detect(previous.images()[0], cv::Mat(), {});
   std::vector<unsigned char> found;

@@ -86,7 +86,7 @@ class Window {
 
   void addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
   void initializeLandmarks();
-  double alignNewest(BundlePose* pose) const;
+  BundlePose alignedNewest(const std::vector<Eigen::Isometry3d>& guesses) const;
   bool seemsAtRest() const;
   void dropMoving(WindowEstimate* estimate);
   bool seenInNewest(const BundleLandmark& landmark) const;

@@ -19,8 +19,9 @@ struct OpticalFlowOptions {
 /// Pyramid of one image, built once and used for every flow from and to it.
 class FlowPyramid {
  public:
-  FlowPyramid() = default;
-  FlowPyramid(const cv::Mat& grey, const OpticalFlowOptions& options);
+  /// Copies the image, CV_8UC1; uses the memory of the pyramid that was here where it has the size.
+  void build(const cv::Mat& grey, const OpticalFlowOptions& options);
+  void clear();
 
   bool empty() const { return images_.empty(); }
   /// Grey images, finest first, each half the size of the one before; at least one.
