@@ -59,11 +59,11 @@ run_rostest() {  # run_rostest BUILD NAME FILE.test [NAME:=VALUE ...]
   )
 }
 
-simulate() {  # simulate SCENARIO [OPTION ...]: prints the path of the bag, without .bag
-  local path=$build/test/recordings/$1
+simulate() {  # simulate SCENARIO [SECONDS]: prints the path of the bag, without .bag
+  local path=$build/test/recordings/$1${2:+_${2}s}
   if [[ ! -f $path.bag || $build/devel/lib/multicam_egomotion/egomotion_sim -nt $path.bag ]]; then
     mkdir -p "$(dirname "$path")"
-    "$build/devel/lib/multicam_egomotion/egomotion_sim" "$1" "$path.bag" "${@:2}" >&2
+    "$build/devel/lib/multicam_egomotion/egomotion_sim" "$1" "$path.bag" ${2:+--duration "$2"} >&2
   fi
   echo "$path"
 }
@@ -91,7 +91,7 @@ stage_fuzz() {
 stage_thread() {
   local thread=$build/thread reports=$build/thread/reports recording name
   build_release
-  recording=$(simulate handheld_stereo --duration 8)
+  recording=$(simulate handheld_stereo 4)
   configure "$thread" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMULTICAM_EGOMOTION_SANITIZE=thread
   cmake --build "$thread" -j "$jobs" --target all test_replay test_services
   rm -rf "$reports"
@@ -102,9 +102,9 @@ stage_thread() {
   libraries=$(g++ -print-file-name=libtsan.so)
   # On one core, where OpenCV starts no threads: they are joined in a library that ThreadSanitizer does not see.
   export EGOMOTION_LAUNCH_PREFIX="taskset -c 0 setarch -R env LD_PRELOAD=$libraries 'TSAN_OPTIONS=$options'"
-  run_rostest "$thread" replay_thread replay.test rate:=0.1 max_error:=0.05 bag:="$recording.bag" \
+  run_rostest "$thread" replay_thread replay.test rate:=0.05 max_error:=0.05 bag:="$recording.bag" \
     rig:="$recording.rig.yaml"
-  run_rostest "$thread" topics_only_thread topics_only.test rate:=0.1 bag:="$recording.bag"
+  run_rostest "$thread" topics_only_thread topics_only.test rate:=0.05 bag:="$recording.bag"
   unset EGOMOTION_LAUNCH_PREFIX
   for name in "$reports"/*; do
     [[ ! -e $name ]] || { cat "$name"; fail "thread: found reports, expected none ($reports)"; }
@@ -131,7 +131,7 @@ stage_live() {
 stage_signals() {
   build_release
   local recording
-  recording=$(simulate handheld_stereo --duration 8)
+  recording=$(simulate handheld_stereo 8)
   MULTICAM_EGOMOTION_SIGNALS=$signals run_rostest "$build" signals live_faults.test bag:="$recording.bag" \
     rig:="$recording.rig.yaml"
 }
