@@ -11,7 +11,7 @@ namespace {
 
 /// Polynomial of degree ≤ Degree, constant term first.
 template <int Degree>
-using Polynomial = Eigen::Matrix<double, Degree + 1, 1>;
+using PolynomialVector = Eigen::Matrix<double, Degree + 1, 1>;
 
 template <int M, int N>
 Eigen::Matrix<double, M + N - 1, 1> product(const Eigen::Matrix<double, M, 1>& a,
@@ -21,14 +21,14 @@ Eigen::Matrix<double, M + N - 1, 1> product(const Eigen::Matrix<double, M, 1>& a
   return result;
 }
 
-using Column = std::array<Polynomial<1>, 3>;
+using LinearColumn = std::array<PolynomialVector<1>, 3>;
 
 /// a · (b × c) of columns affine in s.
-Polynomial<3> determinant(const Column& a, const Column& b, const Column& c) {
-  Polynomial<3> result = Polynomial<3>::Zero();
+PolynomialVector<3> determinant(const LinearColumn& a, const LinearColumn& b, const LinearColumn& c) {
+  PolynomialVector<3> result = PolynomialVector<3>::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Polynomial<2> cross = product(b[j], c[k]) - product(b[k], c[j]);
+    const PolynomialVector<2> cross = product(b[j], c[k]) - product(b[k], c[j]);
     result += product(a[i], cross);
   }
   return result;
@@ -55,22 +55,22 @@ std::array<Block, 4> expandBlock(const AxisSystem& system, const Eigen::Vector3d
 void solveAbout(const AxisSystem& system, const Eigen::Vector3d& center, double radius, ApproximateAxes& result) {
   // Columns of block(n) [1 s]ᵀ over 1, x, y, z.
   const std::array<Block, 4> block = expandBlock(system, center);
-  Column columns[4];
+  LinearColumn columns[4];
   for (int function = 0; function < 4; ++function) {
     for (int row = 0; row < 3; ++row) columns[function][row] = block[function].row(row).transpose();
   }
   // Cramer's rule
-  const Polynomial<3> denominator = determinant(columns[1], columns[2], columns[3]);
-  const Polynomial<3> numerators[3] = {-determinant(columns[0], columns[2], columns[3]),
-                                       -determinant(columns[1], columns[0], columns[3]),
-                                       -determinant(columns[1], columns[2], columns[0])};
-  Polynomial<6> sphere = -product(denominator, denominator);
-  for (const Polynomial<3>& numerator : numerators) sphere += product(numerator, numerator);
+  const PolynomialVector<3> denominator = determinant(columns[1], columns[2], columns[3]);
+  const PolynomialVector<3> numerators[3] = {-determinant(columns[0], columns[2], columns[3]),
+                                             -determinant(columns[1], columns[0], columns[3]),
+                                             -determinant(columns[1], columns[2], columns[0])};
+  PolynomialVector<6> sphere = -product(denominator, denominator);
+  for (const PolynomialVector<3>& numerator : numerators) sphere += product(numerator, numerator);
 
   const auto add = [&](double x, bool reciprocal) {
     double powers[4] = {1, x, x * x, x * x * x};
     if (reciprocal) std::reverse(powers, powers + 4);
-    const Eigen::Map<const Polynomial<3>> s(powers);
+    const Eigen::Map<const PolynomialVector<3>> s(powers);
     const Eigen::Vector3d axis =
         Eigen::Vector3d(numerators[0].dot(s), numerators[1].dot(s), numerators[2].dot(s)) / denominator.dot(s);
     const bool usable = axis.squaredNorm() > 0.25 && axis.squaredNorm() < 4 && (axis - center).norm() < radius;
