@@ -201,7 +201,8 @@ void InertialState::hold(std::int64_t stamp_ns, std::int64_t latest_sample_ns) {
 
 void InertialState::advance(const ImuSample& sample, const Unseen& unseen) {
   const ImuSample begin = last_;
-  const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(secondsBetween(begin, sample) / kMaxStepS)));
+  const double wanted = std::ceil(secondsBetween(begin, sample) / kMaxStepS);
+  const int steps = static_cast<int>(std::min(wanted, static_cast<double>(kMaxSteps)));
   for (int i = 1; i < steps; ++i) {
     step(interpolate(begin, sample, begin.stamp_ns + (sample.stamp_ns - begin.stamp_ns) / steps * i), unseen);
   }
