@@ -20,8 +20,8 @@ namespace {
 constexpr double kMaxReferenceDeformation = 0.1;
 // A feature without a match in an overlapping camera is looked for again every so many frames.
 constexpr std::uint64_t kSearchPeriod = 5;
-// Features are matched across cameras in so many groups at the same time.
-constexpr double kMatchingGroups = 16;
+// Parts, at most, that work for several threads is cut into.
+constexpr double kParts = 16;
 
 }  // namespace
 
@@ -118,10 +118,10 @@ class FeatureTracker::Impl {
     }
   }
 
-  // Runs work(0, ...) ... work(count - 1, ...) in `groups` at the same time; each writes only what is its own, and
-  // counts for itself. OpenCV's loops inside stay on the thread that calls them: they are too short to be shared out.
+  // Runs work(0, ...) ... work(count - 1, ...) at the same time; each writes only what is its own, and counts for
+  // itself. OpenCV's loops inside stay on the thread that calls them: they are too short to be shared out.
   template <typename Work>
-  void atOnce(int count, double groups, const Work& work) {
+  void atOnce(int count, const Work& work) {
     std::mutex mutex;
     const auto run = [&](const cv::Range& range) {
       FeatureTrackerCounters counters;
@@ -129,7 +129,7 @@ class FeatureTracker::Impl {
       const std::lock_guard<std::mutex> lock(mutex);
       counters_ += counters;
     };
-    cv::parallel_for_(cv::Range(0, count), run, groups);
+    cv::parallel_for_(cv::Range(0, count), run, kParts);
   }
 
   void takeImages(const FrameSet& frames) {
@@ -143,12 +143,12 @@ class FeatureTracker::Impl {
       }
       taken[image.camera] = &image;
     }
-    atOnce(rig_.size(), rig_.size(), [&](int camera, FeatureTrackerCounters*) {
+    atOnce(rig_.size(), [&](int camera, FeatureTrackerCounters*) {
       FlowPyramid& pyramid = images_.current[camera];
       if (taken[camera]) {
         pyramid.build(taken[camera]->grey, temporal_.flow());
       } else {
-        pyramid.clear();
+        pyramid = FlowPyramid();
       }
     });
   }
@@ -157,7 +157,7 @@ class FeatureTracker::Impl {
     for (Feature& feature : features_) feature.alive = false;
     std::vector<std::vector<Feature*>> owned(rig_.size());
     for (Feature& feature : features_) owned[feature.owner].push_back(&feature);
-    atOnce(rig_.size(), rig_.size(), [&](int camera, FeatureTrackerCounters* counters) {
+    atOnce(rig_.size(), [&](int camera, FeatureTrackerCounters* counters) {
       temporal_.track(images_, camera, owned[camera], counters);
     });
     // What its camera lost may live on in another that saw it.
@@ -178,7 +178,7 @@ class FeatureTracker::Impl {
   }
 
   void matchAcrossCameras() {
-    atOnce(static_cast<int>(features_.size()), kMatchingGroups, [&](int i, FeatureTrackerCounters* counters) {
+    atOnce(static_cast<int>(features_.size()), [&](int i, FeatureTrackerCounters* counters) {
       Feature& feature = features_[i];
       if (!feature.alive) return;
       for (int camera = 0; camera < rig_.size(); ++camera) {
@@ -239,8 +239,8 @@ class FeatureTracker::Impl {
   void addFeature(int camera, const Eigen::Vector2d& pixel) {
     Feature feature;
     feature.owner = camera;
-    if (!regions_.contain(camera, pixel) || !makeImagePoint(rig_.camera(camera).model, pixel, &feature.points[camera]))
-      return;
+    if (!regions_.contain(camera, pixel)) return;
+    if (!makeImagePoint(rig_.camera(camera).model, pixel, &feature.points[camera])) return;
     feature.id = next_id_++;
     feature.seen[camera] = true;
     makeReference(&feature);

@@ -25,11 +25,6 @@ void FlowPyramid::build(const cv::Mat& grey, const OpticalFlowOptions& options) 
   for (std::size_t i = 0; i < images_and_derivatives_.size(); i += 2) images_.push_back(images_and_derivatives_[i]);
 }
 
-void FlowPyramid::clear() {
-  images_and_derivatives_.clear();
-  images_.clear();
-}
-
 void flowForward(const FlowPyramid& previous, const FlowPyramid& current, const OpticalFlowOptions& options, int levels,
                  const std::vector<cv::Point2f>& points, std::vector<cv::Point2f>* guesses,
                  std::vector<unsigned char>* found) {

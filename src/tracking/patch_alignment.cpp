@@ -33,7 +33,7 @@ cv::v_float32x4 bilinear(const std::uint8_t* data, std::ptrdiff_t step, const cv
   int column[4], row[4];
   cv::v_store(column, iu);
   cv::v_store(row, iv);
-  // A pixel and its right neighbour, those of the row below in the upper half of the word.
+  // A pixel and its right neighbour, those of the row below in the upper half of the word: little-endian.
   const auto word = [&](int i) {
     const std::uint8_t* p = data + row[i] * step + column[i];
     std::uint16_t above, below;

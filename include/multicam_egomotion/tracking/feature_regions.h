@@ -13,13 +13,15 @@ namespace multicam_egomotion {
 /// Where in the images of a rig features may be.
 class FeatureRegions {
  public:
-  /// `rig` must outlive this; `border_px` is kept free.
+  /// `rig` must outlive this; `border_px`: left free along the edges of the images [px].
   FeatureRegions(const CameraRig& rig, double border_px) : rig_(rig), border_px_(border_px), masks_(rig.size()) {}
 
   /// As FeatureTracker::setMask.
   void setMask(int camera, const cv::Mat& mask);
+  /// CV_8UC1 of the camera's size, 0 = ignore; empty: none.
   const cv::Mat& mask(int camera) const { return masks_[camera]; }
 
+  /// Whether a feature of a camera may be at `pixel` [px].
   bool contain(int camera, const Eigen::Vector2d& pixel) const;
 
  private:

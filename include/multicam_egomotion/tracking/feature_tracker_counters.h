@@ -18,6 +18,7 @@ struct FeatureTrackerCounters {
   int rejected_epipolar = 0;          ///< earlier matches between cameras that failed in this frame
   std::uint64_t ignored_images = 0;   ///< unknown camera, repeated camera, wrong size or type; since the start
 
+  /// Adds what happened in another part of the same frame.
   FeatureTrackerCounters& operator+=(const FeatureTrackerCounters& more) {
     tracked += more.tracked;
     detected += more.detected;

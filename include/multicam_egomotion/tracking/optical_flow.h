@@ -21,7 +21,6 @@ class FlowPyramid {
  public:
   /// Copies the image, CV_8UC1; uses the memory of the pyramid that was here where it has the size.
   void build(const cv::Mat& grey, const OpticalFlowOptions& options);
-  void clear();
 
   bool empty() const { return images_.empty(); }
   /// Grey images, finest first, each half the size of the one before; at least one.

@@ -40,7 +40,8 @@ class TemporalTracker {
   /// Takes over how good the predictions of the frame were, for the next one.
   void endFrame();
 
-  /// Takes the reference patch of a feature from an image of its owner, or ends it where there is no texture.
+  /// Takes the reference patch of a feature about `pixel` [px] of an image of its owner; where there is no texture it
+  /// has none then.
   void cutReference(const FlowPyramid& pyramid, const Eigen::Vector2d& pixel, Feature* feature) const;
 
   const OpticalFlowOptions& flow() const { return flow_; }
@@ -56,7 +57,7 @@ class TemporalTracker {
   const FeatureRegions& regions_;
   FeatureTrackerOptions options_;
   OpticalFlowOptions flow_;
-  // Error [px] that 9 of 10 predictions of the last frame stayed within, by camera.
+  /// Error [px] that 9 of 10 predictions of the last frame stayed within, by camera.
   std::vector<double> max_prediction_error_;
   std::vector<std::vector<float>> prediction_errors_;
 };

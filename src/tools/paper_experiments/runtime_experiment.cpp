@@ -11,13 +11,12 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr int kRuntimeRunsPerTrial = 10;  // of ExperimentOptions::trials
-constexpr int kBlock = 10;                // runs that are timed together: reading the clock costs tens of nanoseconds
+constexpr int kBlock = 10;  // runs that are timed together: reading the clock costs tens of nanoseconds
 
 }  // namespace
 
 void runRuntimeExperiment(const ExperimentOptions& options) {
-  const int blocks = options.trials * kRuntimeRunsPerTrial / kBlock;
+  const int blocks = options.solverRuns() / kBlock;
   std::vector<SolverProblem> problems(blocks * kBlock);
   forEachInParallel("Table I: problems", problems.size(), options.threads, [&](std::size_t i) {
     problems[i] = TwoCameraTrial(TwoCameraMotion::kRandom, options.seed, i).problem({}, AxisNoise::kTurned);

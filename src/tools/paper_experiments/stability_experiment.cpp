@@ -11,7 +11,6 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr int kStabilityRunsPerTrial = 10;                      // of ExperimentOptions::trials
 constexpr double kLowest = -18.0, kHighest = 1.0, kBin = 0.25;  // of log10 of an error [rad]
 constexpr double kFailure = 1e-6;                               // [rad]
 
@@ -33,7 +32,7 @@ void writeDensity(const std::string& solver, const std::string& error, const std
 
 void runStabilityExperiment(const ExperimentOptions& options) {
   const std::vector<PaperSolver>& solvers = paperSolvers();
-  const std::size_t runs = static_cast<std::size_t>(options.trials) * kStabilityRunsPerTrial;
+  const std::size_t runs = options.solverRuns();
   std::vector<std::vector<PoseErrors>> errors(solvers.size(), std::vector<PoseErrors>(runs));
   forEachInParallel("Fig. 3: numerical stability", runs, options.threads, [&](std::size_t i) {
     const TwoCameraTrial trial(TwoCameraMotion::kRandom, options.seed, i);
