@@ -6,7 +6,7 @@ add_library(multicam_egomotion_ros ${ros_sources})
 add_dependencies(multicam_egomotion_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 target_include_directories(multicam_egomotion_ros SYSTEM PUBLIC ${catkin_INCLUDE_DIRS} ${YAML_CPP_INCLUDE_DIR})
 target_link_libraries(multicam_egomotion_ros
-  PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} PRIVATE ${YAML_CPP_LIBRARIES})
+  PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} opencv_imgcodecs PRIVATE ${YAML_CPP_LIBRARIES})
 set(ros_headers <map> <string> <vector> <Eigen/Geometry> <image_transport/image_transport.h> <nav_msgs/Odometry.h>
   <opencv2/core.hpp> <ros/ros.h> <rosbag/bag.h> <rosbag/view.h> <sensor_msgs/CameraInfo.h> <sensor_msgs/Image.h>
   <sensor_msgs/Imu.h> <tf2_msgs/TFMessage.h> <tf2_ros/transform_listener.h>)
@@ -34,7 +34,8 @@ layer_sources(fault_injection_sources tools/fault_injection)
 add_library(multicam_egomotion_fault_injection STATIC ${fault_injection_sources})
 target_include_directories(multicam_egomotion_fault_injection PUBLIC src/tools)
 target_include_directories(multicam_egomotion_fault_injection SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
-target_link_libraries(multicam_egomotion_fault_injection PUBLIC multicam_egomotion_core ${catkin_LIBRARIES})
+target_link_libraries(multicam_egomotion_fault_injection
+  PUBLIC multicam_egomotion_core ${catkin_LIBRARIES} opencv_imgcodecs)
 precompile_headers(ros_libraries multicam_egomotion_fault_injection)
 add_executable(corrupt_bag src/tools/corrupt_bag.cpp)
 target_link_libraries(corrupt_bag multicam_egomotion_fault_injection boost_program_options)

@@ -91,8 +91,9 @@ endforeach()
 set_target_properties(test_solvers PROPERTIES UNITY_BUILD OFF)  # each file names its solvers alike
 if(NOT MULTICAM_EGOMOTION_CORE_ONLY)
   add_unit_tests(geometry multicam_egomotion_simulator opencv_calib3d)
-  add_unit_tests(odometry multicam_egomotion_simulator ${YAML_CPP_LIBRARIES})
-  foreach(layer imu tracking simulator)
+  # Apart from the layers, for reading images loads a hundred libraries.
+  add_unit_tests(recordings multicam_egomotion_simulator opencv_imgcodecs ${YAML_CPP_LIBRARIES})
+  foreach(layer odometry imu tracking simulator)
     add_unit_tests(${layer} multicam_egomotion_simulator)
   endforeach()
 endif()
