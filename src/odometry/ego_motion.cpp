@@ -423,6 +423,7 @@ class EgoMotion::Impl {
   void fillState(const MotionModel& model, EgoMotionResult* result) const {
     result->T_odom_body.pose = published_.pose();
     result->T_odom_body.covariance = covariance_ + drift_.covariance();
+    result->up = model.up();
     result->tilt_sigma = model.tiltSigma();
     for (int axis : {3, 4}) {  // since the last frame, or without an IMU
       double& variance = result->T_odom_body.covariance(axis, axis);

@@ -52,6 +52,7 @@ EgoMotionMessage toEgoMotionMessage(const EgoMotionResult& result, const FrameNa
   message.pixel_sigma = result.pixel_sigma;
   message.gyroscope_bias = toRosVector(result.gyroscope_bias);
   message.accelerometer_bias = toRosVector(result.accelerometer_bias);
+  message.up = toRosVector(result.up);
   message.tilt_sigma = result.tilt_sigma;
   return message;
 }

@@ -55,7 +55,10 @@ struct EgoMotionResult {
   TwistWithCovariance twist;           ///< at stamp_ns
   Eigen::Vector3d gyroscope_bias = Eigen::Vector3d::Zero();      ///< [rad/s]
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  double tilt_sigma = 0.0;                                       ///< of the gravity direction, per axis [rad]
+  /// Against gravity, unit, in body axes: all that is known of the vertical by now, which the attitude of odom follows
+  /// slowly (contract 5).
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double tilt_sigma = 0.0;  ///< of `up`, per axis [rad]
 
   ScaleState scale_state = ScaleState::kNotApplicable;
   double scale_sigma = 0.0;  ///< relative, contract 7; infinite when nothing is seen of it

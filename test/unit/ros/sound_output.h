@@ -43,6 +43,7 @@ inline void expectSoundOutput(const std::vector<EgoMotionResult>& results, doubl
     SCOPED_TRACE("result at " + std::to_string(result.stamp_ns));
     EXPECT_GT(result.stamp_ns, 0);
     EXPECT_FALSE(std::isnan(result.scale_sigma));
+    EXPECT_NEAR(result.up.norm(), 1.0, 1e-9);
     EXPECT_TRUE(std::isfinite(result.tilt_sigma) && std::isfinite(result.pixel_sigma));
     EXPECT_TRUE(result.gyroscope_bias.allFinite() && result.accelerometer_bias.allFinite());
     for (const Eigen::Vector3d& point : result.points) EXPECT_TRUE(point.allFinite());
