@@ -334,6 +334,17 @@ void InertialState::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
   markFrame();
 }
 
+void InertialState::addCommonError(const InertialState& other) {
+  ErrorState error;
+  error.segment<3>(kTheta) = logSO3(other.R_odom_imu_ * R_odom_imu_.transpose());
+  error.segment<3>(kVelocity) = other.velocityInImuAxes() - velocityInImuAxes();
+  error.segment<3>(kGyroscopeBias) = other.gyroscope_bias_ - gyroscope_bias_;
+  error.segment<3>(kAccelerometerBias) = other.accelerometer_bias_ - accelerometer_bias_;
+  error.segment<3>(kFrameTheta) = logSO3(other.R_odom_frame_ * R_odom_frame_.transpose());
+  error.segment<3>(kDisplacement) = other.displacement_ - displacement_;
+  covariance_ += error * error.transpose();
+}
+
 Eigen::Matrix3d InertialState::attitudeCovariance() const { return covariance_.block<3, 3>(kTheta, kTheta); }
 
 Eigen::Matrix3d InertialState::frameAttitudeCovariance() const {

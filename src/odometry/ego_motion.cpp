@@ -317,6 +317,7 @@ class EgoMotion::Impl {
     const LearnedMotion learned = learnedMotion(estimate, predicted.T_a_b.translation(), scale_seen_,
                                                 consensus.parallax_px, rig_.camera(0).model.focalLength());
     motion_->correct(learned.vision, learned.use_displacement);
+    if (inertial_) inertial_->reviseStart(estimate);
     if (estimate.scale_state != ScaleState::kNotApplicable) {
       scale_seen_ = estimate.scale_state == ScaleState::kObservable;
     }
@@ -340,12 +341,12 @@ class EgoMotion::Impl {
   // Turns the attitude towards the vertical: at once while it is being found after a start in motion, later slowly
   // (contract 5).
   void followVertical(const Eigen::Vector3d& window_position, double dt) {
-    settled_ =
-        settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
     Eigen::Matrix3d turn = tiltCorrection(published_.pose().linear(), motion_->up(), motion_->tiltSigma());
     if (settled_) turn = slowed(turn, options_.max_tilt_correction_rate, dt);
     published_.turn(turn);
     window_.rotateAbout(window_position, turn);
+    settled_ =
+        settled_ || motion_->tiltSigma() < kSettledTilt || seconds(motion_->stamp() - epoch_start_ns_) > kMaxSettling;
   }
 
   // Of the published attitude, per axis: what is known of the vertical and how far the attitude is from it. Without an

@@ -7,6 +7,7 @@
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/learned_motion.h"
 #include "multicam_egomotion/odometry/motion_model.h"
 
 namespace multicam_egomotion {
@@ -23,7 +24,24 @@ constexpr double kRefusedMemory = 20.0;            // frames over which the shar
 // then that what the force told of it hardly counts: what has been seen is used once.
 constexpr double kTiltedStart = 0.05;  // [rad]
 constexpr double kBetterKnown = 3.0;
+// Likewise where the lengths of the motions since the start are so many times better known.
+constexpr double kBetterScale = 2.0;
 constexpr std::int64_t kLatestNewStart = 2000000000;  // after the start, within the samples kept [ns]
+
+// The motion between the last two frames by the images, with the length that the whole window gives it and without the
+// part of its error that all motions of the window have in common.
+RelativeMotion withoutScaleError(const WindowEstimate& estimate) {
+  RelativeMotion motion = estimate.vision;
+  const Eigen::Vector3d direction = motion.T_a_b.translation().normalized();
+  motion.T_a_b.translation() = estimate.relative.T_a_b.translation().norm() * direction;
+  Matrix6d across = Matrix6d::Identity();
+  across.topLeftCorner<3, 3>() -= direction * direction.transpose();
+  motion.covariance = propagated(across, motion.covariance);
+  const double noise = 0.5 * motion.covariance.topLeftCorner<3, 3>().trace();
+  motion.covariance.topLeftCorner<3, 3>() += noise * direction * direction.transpose();
+  return motion;
+}
+
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
@@ -105,6 +123,7 @@ void InertialMotion::catchUp() {
   for (const Frame& frame : frames) {
     propagateTo(frame.stamp_ns);
     if (frame.vision) correct(*frame.vision, frame.scale_seen);
+    newest_.measured = frame.measured;
     markFrame();
   }
   if (state_.stamp() < now_ns) propagateTo(now_ns);
@@ -129,7 +148,7 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   newest_.vision = vision;
   newest_.scale_seen = scale_seen;
   learn(vision, scale_seen);
-  startAnew();
+  startFromVertical();
 }
 
 void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
@@ -152,12 +171,52 @@ void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
 }
 
 // The filter is linear in small angles only: what a wrong vertical at the start makes of gravity stays in the biases.
-void InertialMotion::startAnew() {
+void InertialMotion::startFromVertical() {
   if (!start_ || samples_were_short_) return;
   const Eigen::Vector3d up = start_->R_start_frame * state_.rotationSinceFrame() * state_.attitude().row(2).transpose();
   if (shortestArc(start_->up, up).norm() < kTiltedStart || kBetterKnown * state_.tiltSigma() > start_->tilt_sigma) {
     return;
   }
+  makeStartAnew(up);
+}
+
+void InertialMotion::reviseStart(const WindowEstimate& estimate) {
+  if (!start_) return;
+  for (std::vector<Frame>* frames : {&start_->frames, &complete_start_->frames, &bridged_}) {
+    for (Frame& frame : *frames) {
+      if (frame.measured) frame.measured->T_a_b.translation() *= estimate.lengthening;
+    }
+  }
+  if (estimate.scale_state == ScaleState::kNotApplicable) return;
+  newest_.measured = withoutScaleError(estimate);
+  start_->scale_sigma = std::max(start_->scale_sigma, std::min(1.0, estimate.scale_sigma));
+  if (estimate.scale_state != ScaleState::kObservable || samples_were_short_ ||
+      kBetterScale * estimate.scale_sigma > start_->scale_sigma) {
+    return;
+  }
+  start_->scale_sigma = estimate.scale_sigma;
+  start_->measured = true;
+  makeStartAnew(start_->up);
+}
+
+void InertialMotion::makeStartAnew(const Eigen::Vector3d& up) {
+  InertialMotion longer = *this;
+  replayStart(up, 1.0);
+  if (!start_->measured) return;
+  longer.replayStart(up, 1.0 + kUnderstatedScale * start_->scale_sigma);
+  state_.addCommonError(longer.state_);
+}
+
+void InertialMotion::replayStart(const Eigen::Vector3d& up, double lengthening) {
+  const auto learnFrame = [&](const Frame& frame) {
+    if (start_->measured && frame.measured) {
+      RelativeMotion longer = *frame.measured;
+      longer.T_a_b.translation() *= lengthening;
+      learn(longer, true);
+    } else if (frame.vision) {
+      learn(*frame.vision, frame.scale_seen);
+    }
+  };
   const std::int64_t now_ns = state_.stamp();
   const Frame newest = newest_;
   const double refused_share = refused_share_;
@@ -167,14 +226,14 @@ void InertialMotion::startAnew() {
   start_->R_start_frame.setIdentity();
   for (const Frame& frame : start_->frames) {
     propagateTo(frame.stamp_ns);
-    if (frame.vision) learn(*frame.vision, frame.scale_seen);
+    learnFrame(frame);
     start_->R_start_frame *= state_.rotationSinceFrame();
     state_.markFrame();
   }
   startFromHere();
   propagateTo(now_ns);
   newest_ = newest;
-  learn(*newest.vision, newest.scale_seen);
+  learnFrame(newest);
   refused_share_ = refused_share;
 }
 

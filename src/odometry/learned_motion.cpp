@@ -10,8 +10,7 @@ namespace {
 constexpr double kFarDistance = 20.0;       // what does not move in the images is taken to be no further away [m]
 constexpr double kUnknownDistance = 100.0;  // sigma of a displacement of which only the direction is seen [m]
 constexpr double kStillParallax = 0.1;      // image motion that cannot be told from none [px]
-constexpr double kLastingFrames = 25.0;     // that share an error of the scale,
-constexpr double kUnderstated = 2.0;        // and how much larger it may be than its sigma, which knows of noise only
+constexpr double kLastingFrames = 25.0;     // that share an error of the scale
 
 double square(double x) { return x * x; }
 
@@ -43,7 +42,7 @@ LearnedMotion learnedMotion(const WindowEstimate& estimate, const Eigen::Vector3
     const Eigen::Vector3d direction = T.translation() / seen;
     const double across = 0.5 * (covariance.trace() - direction.dot(covariance * direction));
     const double lasting = std::max(0.0, square(estimate.scale_sigma * seen) - across);
-    covariance += kLastingFrames * square(kUnderstated) * lasting * direction * direction.transpose();
+    covariance += kLastingFrames * square(kUnderstatedScale) * lasting * direction * direction.transpose();
   }
   return learned;
 }

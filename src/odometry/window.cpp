@@ -254,6 +254,7 @@ bool Window::solve(WindowEstimate* estimate) {
   if (!summary.finite) return false;
   const bool from_the_start = prior_.poses.size() == 1;  // nothing has been marginalized
   if (from_the_start && !newcomers_wait_) findScale(options_.bundle, &bundle, &summary);
+  estimate->lengthening *= lengthening(bundle);
   for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
   for (std::size_t l = 0; l < tracks.size(); ++l) {
     BundleLandmark& landmark = landmarks_[tracks[l]];
@@ -273,6 +274,18 @@ bool Window::solve(WindowEstimate* estimate) {
   with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
   estimate->covariance += propagated(with_start, start_.covariance);
   return true;
+}
+
+// Of the motions between the states before the newest by their new poses.
+double Window::lengthening(const BundleAdjustment& bundle) const {
+  double common = 0.0, before = 0.0;
+  for (std::size_t i = 1; i + 1 < states_.size(); ++i) {
+    const Eigen::Vector3d p = states_[i - 1].pose.R.transpose() * (states_[i].pose.p - states_[i - 1].pose.p);
+    const BundlePose& a = bundle.poses[i - 1];
+    common += p.dot(a.R.transpose() * (bundle.poses[i].p - a.p));
+    before += p.squaredNorm();
+  }
+  return common > 0.0 ? common / before : 1.0;
 }
 
 // Splits the tracks of the newest frame by their errors there, and forgets what disagrees.

@@ -103,6 +103,8 @@ class InertialState {
   /// Goes on at another time (clock jump, long outage): attitude and biases stay, `attitude_sigma` [rad] is added to
   /// each axis, velocity is 0 with its prior, and now is the frame.
   void restartAt(std::int64_t stamp_ns, double attitude_sigma);
+  /// Adds what one cause may have changed everywhere: `other` is the same state where the cause is one sigma.
+  void addCommonError(const InertialState& other);
   /// The next initialize() starts from the bias priors.
   void forgetBiases();
 

@@ -6,6 +6,9 @@
 
 namespace multicam_egomotion {
 
+/// How much larger an error of the scale may be than its sigma, which knows of noise only.
+constexpr double kUnderstatedScale = 2.0;
+
 /// What the motion model may learn from a frame (contract 4).
 struct LearnedMotion {
   RelativeMotion vision;

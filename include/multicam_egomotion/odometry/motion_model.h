@@ -51,7 +51,7 @@ class MotionModel {
 
 /// From gyroscope and accelerometer through InertialState, moved to the body with the lever arm. Frames that samples
 /// do not reach are bridged; when the samples come, up to a second late, all is done again with them. So is a start in
-/// motion, when vision has shown that the accelerometer was far off the vertical.
+/// motion, when vision has shown that the accelerometer was far off the vertical, or how long the motions were.
 class InertialMotion : public MotionModel {
  public:
   /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9).
@@ -64,6 +64,9 @@ class InertialMotion : public MotionModel {
   std::int64_t stamp() const override { return state_.stamp(); }
   MotionSummary motionSinceFrame() const override;
   void correct(const RelativeMotion& vision, bool scale_seen) override;
+  /// After correct(): what the window says of the last motion and of the length of those before. Scale that is found
+  /// late has looked like an acceleration until then; the start is made again with the lengths that are known now.
+  void reviseStart(const WindowEstimate& estimate);
   void markFrame() override;
   Eigen::Vector3d up() const override;
   Eigen::Vector3d upAtFrame() const override;
@@ -82,6 +85,7 @@ class InertialMotion : public MotionModel {
     std::int64_t stamp_ns = 0;
     std::optional<RelativeMotion> vision;
     bool scale_seen = false;
+    std::optional<RelativeMotion> measured;  // by the window, of the length that is known by now; where it moved
   };
 
   /// What the start was made from, to make it again.
@@ -92,9 +96,13 @@ class InertialMotion : public MotionModel {
     Eigen::Matrix3d R_start_frame;  // from the last of the samples
     Eigen::Vector3d up;             // taken there, IMU axes
     double tilt_sigma;              // of what the force told [rad]
+    double scale_sigma = 0.0;       // worst of the lengths that the state has been made from
+    bool measured = false;          // they were those of the window
   };
 
-  void startAnew();
+  void startFromVertical();
+  void makeStartAnew(const Eigen::Vector3d& up);
+  void replayStart(const Eigen::Vector3d& up, double lengthening);
   void learn(const RelativeMotion& vision, bool scale_seen);
   void takeTiltFromMessage();
   void propagateTo(std::int64_t stamp_ns);

@@ -40,6 +40,7 @@ struct WindowEstimate {
   Matrix6d covariance = Matrix6d::Zero();  ///< of T_odom_body, as PoseWithCovariance
   RelativeMotion relative;                 ///< from everything
   RelativeMotion vision;                   ///< from the images alone (contract 4)
+  double lengthening = 1.0;                ///< factor by which the motions before are longer than they seemed
   double scale_sigma = 0.0;                ///< contract 7
   ScaleState scale_state = ScaleState::kNotApplicable;
   double pixel_sigma = 0.0;
@@ -93,6 +94,7 @@ class Window {
   double errorInNewest(const BundleLandmark& landmark) const;
   void optimize(WindowEstimate* estimate);
   bool solve(WindowEstimate* estimate);
+  double lengthening(const BundleAdjustment& bundle) const;
   void classify(WindowEstimate* estimate);
   bool wantsKeyframe(WindowEstimate* estimate) const;
   void dropState(int index);

@@ -457,6 +457,25 @@ TEST(InertialState, KeepsTheVerticalThroughALongOutageOfVision) {
   EXPECT_LT(tiltError(state, motion.attitude(125)).norm(), 3 * state.tiltSigma());
 }
 
+TEST(InertialState, CoversWhatACommonCauseChanges) {
+  const Trajectory motion;
+  InertialState state = started(motion);
+  followOver(motion, 0, 2, &state);
+  InertialState other = state;
+  ASSERT_TRUE(other.correctVelocity(state.velocityInImuAxes() + Eigen::Vector3d(0.01, 0.02, -0.01), isotropic(0.01)));
+  const Eigen::Vector3d velocity = other.velocityInImuAxes() - state.velocityInImuAxes();
+  const Eigen::Vector3d theta = logSO3(other.attitude() * state.attitude().transpose());
+  ASSERT_GT(velocity.norm(), 1e-3);
+  ASSERT_GT(theta.norm(), 1e-5);
+  const Eigen::Matrix3d velocity_covariance = state.velocityCovarianceInImuAxes() + velocity * velocity.transpose();
+  const Eigen::Matrix3d attitude_covariance = state.attitudeCovariance() + theta * theta.transpose();
+  const Eigen::Matrix3d attitude = state.attitude();
+  state.addCommonError(other);
+  EXPECT_LT((state.velocityCovarianceInImuAxes() - velocity_covariance).norm(), 1e-12);
+  EXPECT_LT((state.attitudeCovariance() - attitude_covariance).norm(), 1e-12);
+  EXPECT_EQ(state.attitude(), attitude);
+}
+
 TEST(InertialState, RestartsAtAnotherTimeWithItsBiases) {
   const Trajectory motion;
   InertialState state = started(motion);

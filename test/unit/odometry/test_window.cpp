@@ -125,6 +125,42 @@ TEST(Window, StereoSeesTheScaleOfAStraightLine) {
   EXPECT_LT(run.position_error, 0.01 * run.path);
 }
 
+TEST(Window, LaterFramesSayHowLongTheMotionsWere) {
+  // Cameras without overlap, whose first frames do not see the scale and take it from a speed that is far off.
+  const Scenario scenario = makeScenario("car_surround", lasting(6.5));
+  const Simulator simulator(scenario);
+  TrackSimulationOptions options;
+  options.tracks_per_camera = 100;
+  const SimulatedTracks tracks = simulateTracks(scenario, options);
+  const std::vector<Eigen::Isometry3d> T_body_cam = cameraPosesOf(scenario.rig);
+  constexpr int kFirst = 44;
+  const auto truth = [&](int frame) { return simulator.stateAtFrame(frame).T_world_body; };
+  Window window{WindowOptions()};
+  window.start(tracks.frames[kFirst].stamp_ns, truth(kFirst), Matrix6d::Zero(), tracks.frames[kFirst], T_body_cam);
+  bool scale_seen = false;
+  double path = 0.0, as_seen = 0.0, as_known_later = 0.0;
+  for (std::size_t i = kFirst + 1; i < tracks.frames.size(); ++i) {
+    const int frame = static_cast<int>(i);
+    const Eigen::Isometry3d T_true = truth(frame - 1).inverse() * truth(frame);
+    MotionSummary motion;
+    motion.T_a_b = T_true;
+    motion.T_a_b.translation() *= scale_seen ? 1.0 : 0.2;
+    motion.rotation_covariance = 1e-7 * Eigen::Matrix3d::Identity();
+    motion.translation_covariance = 0.06 * Eigen::Matrix3d::Identity();
+    motion.use_translation = !scale_seen;
+    const WindowEstimate estimate = window.add(tracks.frames[i], T_body_cam, motion, {motion.T_a_b});
+    ASSERT_TRUE(estimate.ok) << frame;
+    scale_seen = estimate.scale_state == ScaleState::kObservable;
+    const double length = estimate.relative.T_a_b.translation().norm();
+    path += T_true.translation().norm();
+    as_seen += length;
+    as_known_later = as_known_later * estimate.lengthening + length;
+  }
+  std::printf("path %.2f m, as seen %.2f m, as known later %.2f m\n", path, as_seen, as_known_later);
+  EXPECT_NEAR(as_known_later, path, 0.01 * path);
+  EXPECT_GT(std::abs(as_seen - path), 3.0 * std::abs(as_known_later - path));
+}
+
 TEST(Window, StandingStaysWhereItIs) {
   SimulationOptions simulation = lasting(10.0);
   Scenario scenario = moving(makeScenario("stop_and_go", simulation), [](const TimeJet&) {
