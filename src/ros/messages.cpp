@@ -14,6 +14,7 @@ namespace multicam_egomotion {
 namespace {
 
 constexpr double kSmallestVariance = 1e-10, kLargestVariance = 1e6;
+constexpr double kSmallestEigenvalue = 1e-12;
 constexpr double kSmallestShare = 1e-13;  // of the largest eigenvalue: positive definite in double precision
 
 void setTwist(const EgoMotionResult& result, nav_msgs::Odometry* message) {
@@ -63,9 +64,11 @@ std::int64_t toNanoseconds(const ros::Time& time) { return static_cast<std::int6
 boost::array<double, 36> toRosCovariance(const Matrix6d& covariance) {
   Matrix6d result = Matrix6d::Identity() * kLargestVariance;
   if (covariance.allFinite()) {
-    // No direction below the smallest variance: positive definite; then the scale of each axis is limited.
-    result = withEigenvaluesRaised(covariance, kSmallestVariance, kSmallestShare);
-    const Eigen::Matrix<double, 6, 1> scale = (kLargestVariance / result.diagonal().array()).min(1.0).sqrt();
+    // Positive definite, then the scale of each axis is limited: what the axes have in common stays.
+    result = withEigenvaluesRaised(covariance, kSmallestEigenvalue, kSmallestShare);
+    const Eigen::Matrix<double, 6, 1> variances = result.diagonal();
+    const Eigen::Matrix<double, 6, 1> scale =
+        (variances.array().max(kSmallestVariance).min(kLargestVariance) / variances.array()).sqrt();
     result = scale.asDiagonal() * result * scale.asDiagonal();
     result = (0.5 * (result + result.transpose())).eval();
     result.diagonal() = result.diagonal().cwiseMax(kSmallestVariance).cwiseMin(kLargestVariance).eval();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <limits>
 
 #include "multicam_egomotion/ros/messages.h"
@@ -26,6 +27,20 @@ TEST(Covariance, GoodOnesAreUnchanged) {
   const Matrix6d A = Matrix6d::Random();
   const Matrix6d covariance = A * A.transpose() + 0.01 * Matrix6d::Identity();
   EXPECT_TRUE(published(covariance).isApprox(covariance, 1e-12));
+}
+
+TEST(Covariance, ALimitOfOneAxisLeavesWhatTheOthersSay) {
+  // A rotation known to 1.5e-5 rad that goes with the translation: less is known of either than of both.
+  Matrix6d covariance = Matrix6d::Identity() * 1e-8;
+  covariance.bottomRightCorner<3, 3>() *= 0.0225;
+  for (int i : {0, 1, 2}) covariance(i, i + 3) = covariance(i + 3, i) = 0.95 * 1e-4 * 1.5e-5;
+  EXPECT_TRUE(published(covariance).isApprox(covariance, 1e-9));
+  covariance.row(4) *= 0.1;
+  covariance.col(4) *= 0.1;
+  const Matrix6d raised = published(covariance);
+  EXPECT_NEAR(raised(4, 4), 1e-10, 1e-16);
+  EXPECT_NEAR(raised(1, 4) / std::sqrt(raised(1, 1) * raised(4, 4)), 0.95, 0.2);
+  EXPECT_NEAR(raised(3, 3), covariance(3, 3), 1e-16);
 }
 
 TEST(Covariance, ZeroHugeSingularAndInvalidOnesBecomePositiveDefinite) {
