@@ -182,11 +182,19 @@ void InertialMotion::startFromVertical() {
 
 void InertialMotion::reviseStart(const WindowEstimate& estimate) {
   if (!start_) return;
-  for (std::vector<Frame>* frames : {&start_->frames, &complete_start_->frames, &bridged_}) {
-    for (Frame& frame : *frames) {
-      if (frame.measured) frame.measured->T_a_b.translation() *= estimate.lengthening;
+  // At a frame without vision the window began anew: what it finds out says nothing of the motions before.
+  bool same_window = true;
+  const auto lengthen = [&](std::vector<Frame>* frames) {
+    for (auto frame = frames->rbegin(); frame != frames->rend(); ++frame) {
+      same_window = same_window && frame->vision.has_value();
+      if (!same_window) frame->measured.reset();
+      if (frame->measured) frame->measured->T_a_b.translation() *= estimate.lengthening;
     }
-  }
+  };
+  lengthen(&bridged_);
+  lengthen(&complete_start_->frames);
+  same_window = true;
+  lengthen(&start_->frames);
   if (estimate.scale_state == ScaleState::kNotApplicable) return;
   newest_.measured = withoutScaleError(estimate);
   start_->scale_sigma = std::max(start_->scale_sigma, std::min(1.0, estimate.scale_sigma));
