@@ -14,7 +14,7 @@ if [[ ${1:-} == --all ]]; then
   shift
 else
   long='Accuracy|Recorded|Starts|Euroc|EgoMotion|SystematicDrift|GyroscopeCheck|Window|test_simulator|test_ego_motion'
-  filter=(-E "^(style_|test_scripts|test_egomotion_bag|rostest_|recording_|consumer_|install_|example_|python_)|$long")
+  filter=(-E "^(style_|test_scripts|test_recordings|test_egomotion_bag|rostest_|recording_|consumer_|install_|example_|python_)|$long")
   targets=(test_{geometry,solvers,estimation,imu,tracking,odometry,fault_table,ros_layer})
   for source in "$package"/test/fuzz/{,ros/}*_fuzzer.cpp; do targets+=("$(basename "$source" .cpp)"); done
 fi
