@@ -49,6 +49,8 @@ class LoopSoak {
     recording_.frames = laps * framesPerLap();
     recording_.stamp = [this](int frame) { return simulator_.frameStamp(frame); };
     recording_.images = [this](int frame) { return lap_.images(frame % framesPerLap(), simulator_.frameStamp(frame)); };
+    for (SoakQuarter& quarter : quarters_)
+      quarter.reserve(static_cast<std::size_t>(recording_.frames / 4 + framesPerLap()));
   }
 
   void run() {
