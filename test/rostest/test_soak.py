@@ -14,7 +14,7 @@ import xmlrpc.client
 
 import numpy as np
 import rosbag
-import rosnode
+import rosgraph
 import rospy
 import rostest
 from nav_msgs.msg import Odometry
@@ -37,12 +37,16 @@ class Soak(unittest.TestCase):
         self.latencies, self.positions, self.warnings = [], {}, []
         rospy.Subscriber("odometry", Odometry, self.note_odometry, queue_size=100)
         rospy.Subscriber("/rosout", Log, self.note_log, queue_size=100)
-        while True:  # the nodelet subscribes once it has started
+        self.pid = self.pid_of_node(30.0)
+
+    def pid_of_node(self, patience_s):
+        master = rosgraph.Master("/soak")
+        deadline = time.monotonic() + patience_s
+        while True:
             try:
-                uri = rosnode.get_api_uri(rospy.get_master(), NODE, skip_cache=True)
-                self.pid = xmlrpc.client.ServerProxy(uri).getPid("/soak")[2]
-                return
-            except (OSError, TypeError):
+                return xmlrpc.client.ServerProxy(master.lookupNode(NODE)).getPid("/soak")[2]
+            except (OSError, rosgraph.MasterError):  # not started yet
+                self.assertLess(time.monotonic(), deadline, f"{NODE} has not started within {patience_s} s")
                 time.sleep(0.2)
 
     def note_odometry(self, message):
