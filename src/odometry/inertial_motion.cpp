@@ -208,9 +208,9 @@ void InertialMotion::reviseStart(const WindowEstimate& estimate) {
 }
 
 void InertialMotion::makeStartAnew(const Eigen::Vector3d& up) {
-  InertialMotion longer = *this;
   replayStart(up, 1.0);
   if (!start_->measured) return;
+  InertialMotion longer = *this;
   longer.replayStart(up, 1.0 + kUnderstatedScale * start_->scale_sigma);
   state_.addCommonError(longer.state_);
 }

@@ -23,6 +23,36 @@ Scenario moving(Scenario scenario, const Trajectory::Motion& motion) {
   return scenario;
 }
 
+/// A window over simulated tracks, started at the true pose of a frame.
+class SimulatedWindow {
+ public:
+  SimulatedWindow(const Scenario& scenario, const TrackSimulationOptions& options, int first)
+      : simulator_(scenario),
+        tracks_(simulateTracks(scenario, options)),
+        T_body_cam_(cameraPosesOf(scenario.rig)),
+        window_(WindowOptions()) {
+    const TrackedFrame& start = tracks_.frames[first];
+    window_.start(start.stamp_ns, truth(first), Matrix6d::Zero(), start, T_body_cam_);
+  }
+
+  int frames() const { return simulator_.frames(); }
+  const SimulatedTracks& tracks() const { return tracks_; }
+  const Window& window() const { return window_; }
+  /// True motion of the body from the frame before.
+  Eigen::Isometry3d motionTo(int frame) const { return truth(frame - 1).inverse() * truth(frame); }
+  WindowEstimate add(int frame, const MotionSummary& motion) {
+    return window_.add(tracks_.frames[frame], T_body_cam_, motion, {motion.T_a_b});
+  }
+
+ private:
+  Eigen::Isometry3d truth(int frame) const { return simulator_.stateAtFrame(frame).T_world_body; }
+
+  Simulator simulator_;
+  SimulatedTracks tracks_;
+  std::vector<Eigen::Isometry3d> T_body_cam_;
+  Window window_;
+};
+
 void add(const Consistency& one, Consistency* sum) {
   sum->sum += one.sum;
   sum->count += one.count;
@@ -127,28 +157,21 @@ TEST(Window, StereoSeesTheScaleOfAStraightLine) {
 
 TEST(Window, LaterFramesSayHowLongTheMotionsWere) {
   // Cameras without overlap, whose first frames do not see the scale and take it from a speed that is far off.
-  const Scenario scenario = makeScenario("car_surround", lasting(6.5));
-  const Simulator simulator(scenario);
   TrackSimulationOptions options;
   options.tracks_per_camera = 100;
-  const SimulatedTracks tracks = simulateTracks(scenario, options);
-  const std::vector<Eigen::Isometry3d> T_body_cam = cameraPosesOf(scenario.rig);
   constexpr int kFirst = 44;
-  const auto truth = [&](int frame) { return simulator.stateAtFrame(frame).T_world_body; };
-  Window window{WindowOptions()};
-  window.start(tracks.frames[kFirst].stamp_ns, truth(kFirst), Matrix6d::Zero(), tracks.frames[kFirst], T_body_cam);
+  SimulatedWindow run(makeScenario("car_surround", lasting(6.5)), options, kFirst);
   bool scale_seen = false;
   double path = 0.0, as_seen = 0.0, as_known_later = 0.0;
-  for (std::size_t i = kFirst + 1; i < tracks.frames.size(); ++i) {
-    const int frame = static_cast<int>(i);
-    const Eigen::Isometry3d T_true = truth(frame - 1).inverse() * truth(frame);
+  for (int frame = kFirst + 1; frame < run.frames(); ++frame) {
+    const Eigen::Isometry3d T_true = run.motionTo(frame);
     MotionSummary motion;
     motion.T_a_b = T_true;
     motion.T_a_b.translation() *= scale_seen ? 1.0 : 0.2;
     motion.rotation_covariance = 1e-7 * Eigen::Matrix3d::Identity();
     motion.translation_covariance = 0.06 * Eigen::Matrix3d::Identity();
     motion.use_translation = !scale_seen;
-    const WindowEstimate estimate = window.add(tracks.frames[i], T_body_cam, motion, {motion.T_a_b});
+    const WindowEstimate estimate = run.add(frame, motion);
     ASSERT_TRUE(estimate.ok) << frame;
     scale_seen = estimate.scale_state == ScaleState::kObservable;
     const double length = estimate.relative.T_a_b.translation().norm();
@@ -296,27 +319,20 @@ TEST(Window, ComposedMotionsAddUp) {
 }
 
 TEST(Window, PointsAreWhereTheyAre) {
-  const Scenario scenario = makeScenario("handheld_stereo", lasting(1.0));
-  const Simulator simulator(scenario);
   TrackSimulationOptions options;
   options.pixel_sigma = 0.1;
-  const SimulatedTracks tracks = simulateTracks(scenario, options);
-  const std::vector<Eigen::Isometry3d> T_body_cam = cameraPosesOf(scenario.rig);
-  Window window{WindowOptions()};
-  window.start(0, simulator.stateAtFrame(0).T_world_body, Matrix6d::Zero(), tracks.frames[0], T_body_cam);
+  SimulatedWindow run(makeScenario("handheld_stereo", lasting(1.0)), options, 0);
   std::mt19937 random(1);
-  for (int frame = 1; frame < simulator.frames(); ++frame) {
-    const Eigen::Isometry3d T =
-        simulator.stateAtFrame(frame - 1).T_world_body.inverse() * simulator.stateAtFrame(frame).T_world_body;
-    const MotionSummary motion = predictedMotion(T, {}, 0.05, &random);
-    ASSERT_TRUE(window.add(tracks.frames[frame], T_body_cam, motion, {motion.T_a_b}).ok);
+  for (int frame = 1; frame < run.frames(); ++frame) {
+    ASSERT_TRUE(run.add(frame, predictedMotion(run.motionTo(frame), {}, 0.05, &random)).ok);
   }
-  const std::vector<Eigen::Vector3d> points = window.points();
+  const std::vector<Eigen::Vector3d> points = run.window().points();
   ASSERT_GT(points.size(), 50u);
   int near = 0;
   for (const Eigen::Vector3d& point : points) {
     double nearest = 1e9;
-    for (const auto& [id, truth] : tracks.points) nearest = std::min(nearest, (point - truth).norm() / truth.norm());
+    for (const auto& [id, truth] : run.tracks().points)
+      nearest = std::min(nearest, (point - truth).norm() / truth.norm());
     near += nearest < 0.1;
   }
   EXPECT_GT(near, 0.9 * points.size());
