@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "multicam_egomotion/tracking/departed_features.h"
 #include "multicam_egomotion/tracking/feature.h"
 #include "multicam_egomotion/tracking/temporal_tracker.h"
 
@@ -32,7 +33,8 @@ class FeatureTracker::Impl {
         options_(options),
         regions_(rig_, options.patch_size_px / 2 + 1),
         temporal_(rig_, regions_, options),
-        matcher_(rig_, crossCameraOptions(options)) {
+        matcher_(rig_, crossCameraOptions(options)),
+        departed_(rig_, regions_, matcher_) {
     check(options);
     makeDetectors();
     forgetImages();
@@ -63,6 +65,7 @@ class FeatureTracker::Impl {
     const std::uint64_t ignored = counters_.ignored_images;
     counters_ = FeatureTrackerCounters();
     counters_.ignored_images = ignored;
+    if (resumed_frame_ != frame_) departed_.clear();  // it is not known how they moved on
     ++frame_;
 
     std::swap(images_.previous, images_.current);
@@ -74,8 +77,20 @@ class FeatureTracker::Impl {
     trackInTime();
     matchAcrossCameras();
     dropDead();
+    newborn_ = next_id_;
     detect();
     return output(frames.stamp_ns);
+  }
+
+  void resume(const std::vector<TrackedPoint>& points, const Eigen::Isometry3d& T_prev_cur) {
+    for (Feature& found : departed_.find(points, T_prev_cur.inverse(), images_)) {
+      makeReference(&found);
+      replaceNewborn(found);
+      const auto next = std::lower_bound(features_.begin(), features_.end(), found.id, beforeId);
+      features_.insert(next, std::move(found));
+      ++counters_.handed_over;
+    }
+    resumed_frame_ = frame_;
   }
 
   void markKeyframe() {
@@ -90,8 +105,7 @@ class FeatureTracker::Impl {
 
   void remove(const std::vector<TrackId>& tracks) {
     for (const TrackId id : tracks) {
-      const auto found = std::lower_bound(features_.begin(), features_.end(), id,
-                                          [](const Feature& feature, TrackId wanted) { return feature.id < wanted; });
+      const auto found = std::lower_bound(features_.begin(), features_.end(), id, beforeId);
       if (found != features_.end() && found->id == id) found->alive = false;
     }
     features_.erase(std::remove_if(features_.begin(), features_.end(), [](const Feature& f) { return !f.alive; }),
@@ -106,7 +120,21 @@ class FeatureTracker::Impl {
   const FeatureTrackerCounters& counters() const { return counters_; }
 
  private:
+  static bool beforeId(const Feature& feature, TrackId id) { return feature.id < id; }
+
+  // Ends what was only just detected where a feature goes on.
+  void replaceNewborn(const Feature& feature) {
+    const auto same = [&](const Feature& other) {
+      const int camera = feature.owner;
+      return other.seen[camera] &&
+             (other.points[camera].pixel - feature.points[camera].pixel).norm() < options_.min_distance_px;
+    };
+    const auto newborn = std::lower_bound(features_.begin(), features_.end(), newborn_, beforeId);
+    features_.erase(std::remove_if(newborn, features_.end(), same), features_.end());
+  }
+
   void forgetImages() {
+    departed_.clear();
     images_.current.assign(rig_.size(), FlowPyramid());
     images_.previous.assign(rig_.size(), FlowPyramid());
   }
@@ -214,6 +242,11 @@ class FeatureTracker::Impl {
   }
 
   void dropDead() {
+    if (rig_.size() > 1) {
+      for (const Feature& feature : features_) {
+        if (!feature.alive) departed_.add(images_, feature);
+      }
+    }
     const auto dead = std::remove_if(features_.begin(), features_.end(), [](const Feature& f) { return !f.alive; });
     counters_.lost = static_cast<int>(features_.end() - dead);
     features_.erase(dead, features_.end());
@@ -267,12 +300,14 @@ class FeatureTracker::Impl {
   FeatureRegions regions_;
   TemporalTracker temporal_;
   CrossCameraMatcher matcher_;
+  DepartedFeatures departed_;
   std::vector<CornerDetector> detectors_;
 
   FramePair images_;
   std::vector<Feature> features_;  // by id
   TrackId next_id_ = 1;
-  std::uint64_t frame_ = 0;
+  TrackId newborn_ = 1;  ///< first that was detected in the newest frame
+  std::uint64_t frame_ = 0, resumed_frame_ = 0;
   FeatureTrackerCounters counters_;
 };
 
@@ -287,6 +322,9 @@ void FeatureTracker::setDetection(const FeatureTrackerOptions& options) { impl_-
 TrackedFrame FeatureTracker::track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
                                    const std::vector<Eigen::Isometry3d>& T_body_cam) {
   return impl_->track(frames, T_prev_cur, T_body_cam);
+}
+void FeatureTracker::resume(const std::vector<TrackedPoint>& points, const Eigen::Isometry3d& T_prev_cur) {
+  impl_->resume(points, T_prev_cur);
 }
 void FeatureTracker::markKeyframe() { impl_->markKeyframe(); }
 void FeatureTracker::remove(const std::vector<TrackId>& tracks) { impl_->remove(tracks); }

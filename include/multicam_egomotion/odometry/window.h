@@ -71,6 +71,8 @@ class Window {
 
   /// Triangulated points in odom with a distance known to better than 20 % [m].
   std::vector<Eigen::Vector3d> points() const;
+  /// Those that the newest frame does not see, in its body frame.
+  std::vector<TrackedPoint> unseen() const;
   double pixelSigma() const { return noise_.pixelSigma(); }
 
  private:
@@ -90,6 +92,7 @@ class Window {
   BundlePose alignedNewest(const std::vector<Eigen::Isometry3d>& guesses) const;
   bool seemsAtRest() const;
   void dropMoving(WindowEstimate* estimate);
+  bool distanceIsKnown(const BundleLandmark& landmark) const;
   bool seenInNewest(const BundleLandmark& landmark) const;
   double errorInNewest(const BundleLandmark& landmark) const;
   void optimize(WindowEstimate* estimate);

@@ -19,7 +19,8 @@ namespace multicam_egomotion {
 ///
 /// A feature belongs to one camera, in which it is tracked from frame to frame by pyramidal Lucas-Kanade (Bouguet 2001)
 /// from a predicted position and then aligned to its reference patch, so that it does not drift; in each frame it is
-/// matched from there into the overlapping cameras. When it leaves its camera it lives on in one of those.
+/// matched from there into the overlapping cameras. When it leaves its camera it lives on in one of those, or with
+/// resume() in any that comes to see it later.
 /// Cameras are worked on at the same time (cv::parallel_for_). Deterministic on any number of threads; never throws on
 /// images.
 class FeatureTracker {
@@ -44,6 +45,11 @@ class FeatureTracker {
   /// `T_body_cam`: pose of each camera of the rig at the time of its own image in the body at the reference stamp.
   TrackedFrame track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
                      const std::vector<Eigen::Isometry3d>& T_body_cam);
+
+  /// Looks for features that left their camera where others should see them in the newest frame. What is found is
+  /// tracked on from the next frame, as the same track. `points`: where tracks are that the frame does not have; what
+  /// is not among them, or left in a frame without this call, is forgotten. `T_prev_cur`: as for track(), estimated.
+  void resume(const std::vector<TrackedPoint>& points, const Eigen::Isometry3d& T_prev_cur);
 
   /// The newest frame becomes the reference of the patches of all its features.
   void markKeyframe();

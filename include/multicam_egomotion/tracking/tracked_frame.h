@@ -22,6 +22,12 @@ struct FeatureObservation {
   Eigen::Matrix<double, 2, 3> to_pixel;
 };
 
+/// Where the point of a track is in the newest body frame.
+struct TrackedPoint {
+  TrackId track = 0;
+  Eigen::Vector3d position;  ///< [m]
+};
+
 /// Features of one frame set, sorted by (track, camera).
 struct TrackedFrame {
   std::int64_t stamp_ns = 0;

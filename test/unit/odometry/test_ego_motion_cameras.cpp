@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 multicam_egomotion authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Rigs whose cameras do not overlap, and cameras that fail.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "ego_motion_run.h"
+#include "scaled_rig.h"
+#include "simulator/simulator.h"
+
+namespace multicam_egomotion {
+namespace {
+
+constexpr double kStretch = 20.0;  // over which drift is measured [m]
+
+/// Ten seconds of a vehicle with a camera to each side, at half the resolution.
+class SurroundDrive {
+ public:
+  SurroundDrive() : simulator_(scenario()) {
+    for (int frame = 0; frame < simulator_.frames(); ++frame) images_.push_back(simulator_.renderFrame(frame).images);
+    recording_.imu = simulator_.imuSamples();
+    recording_.frames = simulator_.frames();
+    recording_.images = [this](int frame) { return images_[frame]; };
+    recording_.stamp = [this](int frame) { return simulator_.frameStamp(frame); };
+  }
+
+  /// Of all frames, without the images of camera `lost` (-1: none) from 1 s on.
+  std::vector<EgoMotionResult> run(int lost) const {
+    EgoMotion odometry(simulator_.scenario().rig, simulator_.scenario().imu, {});
+    const auto lose = [&](int frame, std::vector<CameraImage>* images) {
+      if (lost >= 0 && frame >= 10) images->erase(images->begin() + lost);
+    };
+    return ofFrames(RecordingPlayer(recording_).play(&odometry, 0, recording_.frames, lose), recording_);
+  }
+
+  /// Mean error of the position after a stretch, as a share of it.
+  double drift(const std::vector<EgoMotionResult>& results) const {
+    double sum = 0.0;
+    int stretches = 0;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      double length = 0.0;
+      std::size_t j = i;
+      while (length < kStretch && ++j < results.size()) {
+        length += motion(results[j - 1].stamp_ns, results[j].stamp_ns).translation().norm();
+      }
+      if (j >= results.size()) break;
+      const Eigen::Isometry3d found = results[i].T_odom_body.pose.inverse() * results[j].T_odom_body.pose;
+      const Eigen::Isometry3d truth = motion(results[i].stamp_ns, results[j].stamp_ns);
+      sum += (found.translation() - truth.translation()).norm() / length;
+      ++stretches;
+    }
+    return sum / stretches;
+  }
+
+  /// Sum of the lengths of the motions between frames over that of the true ones.
+  double scale(const std::vector<EgoMotionResult>& results) const {
+    double found = 0.0, truth = 0.0;
+    for (const EgoMotionResult& one : results) {
+      if (one.scale_state != ScaleState::kObservable) continue;
+      found += one.T_previous_body.pose.translation().norm();
+      truth += motion(one.previous_stamp_ns, one.stamp_ns).translation().norm();
+    }
+    return found / truth;
+  }
+
+  int frames() const { return simulator_.frames(); }
+
+ private:
+  static Scenario scenario() {
+    SimulationOptions options;
+    options.duration_s = 10.0;
+    Scenario scenario = makeScenario("car_surround", options);
+    scenario.rig = scaledRig(scenario.rig, 0.5);
+    return scenario;
+  }
+  Eigen::Isometry3d motion(std::int64_t from_ns, std::int64_t to_ns) const {
+    return simulator_.stateAt(from_ns).T_world_body.inverse() * simulator_.stateAt(to_ns).T_world_body;
+  }
+
+  Simulator simulator_;
+  std::vector<std::vector<CameraImage>> images_;
+  Recording recording_;
+};
+
+// The lever between the cameras ahead and behind tells the scale in turns alone. What passes from one camera's view
+// into the next tells it always, and with every camera that is left.
+TEST(EgoMotionCameras, OneOfFourLostDriftsLittleMore) {
+  const SurroundDrive drive;
+  const std::vector<EgoMotionResult> all = drive.run(-1);
+  const double drift = drive.drift(all);
+  std::printf("all cameras: drift %.3f %%, scale %.5f\n", 100.0 * drift, drive.scale(all));
+  EXPECT_NEAR(drive.scale(all), 1.0, 0.002);
+  for (int lost = 0; lost < 4; ++lost) {
+    const std::vector<EgoMotionResult> rest = drive.run(lost);
+    std::printf("without camera %d: drift %.3f %%, scale %.5f\n", lost, 100.0 * drive.drift(rest), drive.scale(rest));
+    EXPECT_EQ(static_cast<int>(rest.size()), drive.frames());
+    for (const EgoMotionResult& one : rest) EXPECT_TRUE(one.has_pose);
+    EXPECT_LT(drive.drift(rest), 1.5 * drift);
+    EXPECT_NEAR(drive.scale(rest), 1.0, 0.004);
+  }
+}
+
+}  // namespace
+}  // namespace multicam_egomotion
