@@ -8,7 +8,7 @@
 namespace multicam_egomotion {
 namespace {
 
-Distortion readDistortion(const YamlReader& camera) {
+Distortion readKalibrDistortion(const YamlReader& camera) {
   const YamlReader model = camera.at("camera_model");
   if (model.text() != "pinhole") {
     model.fail("the camera model '" + model.text() + "'", "pinhole (calibrate with pinhole-radtan or pinhole-equi)");
@@ -50,7 +50,7 @@ RigFile readKalibrRig(const YamlReader& root, const std::string& imu_path) {
   std::vector<Eigen::Isometry3d> T_cam_imu;
   for (std::string name = "cam0"; root.has(name); name = "cam" + std::to_string(cameras.size())) {
     const YamlReader camera = root.at(name);
-    const Distortion distortion = readDistortion(camera);
+    const Distortion distortion = readKalibrDistortion(camera);
     const std::vector<int> resolution = camera.at("resolution").integers(2);
     const std::vector<double> k = camera.at("intrinsics").numbers(4);
     const std::vector<double> coefficients = camera.has("distortion_coeffs") || distortion != Distortion::kNone

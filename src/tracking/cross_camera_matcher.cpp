@@ -71,7 +71,7 @@ Eigen::Matrix<double, 2, 3> CrossCameraMatcher::inverseCurvature(const Pair& pai
 }
 
 bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level,
-                                CrossCameraMatch* match, double* correlation) const {
+                                WarpModel model, CrossCameraMatch* match, double* correlation) const {
   PatchWarp warp;
   if (!warpAt(pair, point, inverse_distance, &warp)) return false;
   PatchAlignmentOptions alignment;
@@ -84,15 +84,16 @@ bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, doubl
     // Coarse levels only bring the guess nearer; near the border or without texture there the finest alone decides.
     const PatchWarp from = atLevel(to_first, level);
     PatchWarp to{warp.pixel / (1 << level)};
-    if (!patch.cut(pair.from_image[level], from, options_.patch_size_px, WarpModel::kTranslation) ||
+    if (!patch.cut(pair.from_image[level], from, options_.patch_size_px,
+                   level == 0 ? model : WarpModel::kTranslation) ||
         !patch.align(pair.to_image[level], alignment, &to, correlation)) {
       if (level == 0) return false;
       continue;
     }
     warp.pixel = to.pixel * (1 << level);
   }
-  const CameraModel& model = rig_.camera(pair.to).model;
-  if (!model.contains(warp.pixel) || !makeImagePoint(model, warp.pixel, &match->point)) return false;
+  const CameraModel& camera = rig_.camera(pair.to).model;
+  if (!camera.contains(warp.pixel) || !makeImagePoint(camera, warp.pixel, &match->point)) return false;
 
   match->inverse_distance = std::max(0.0, inverseDistance(point, match->point, pair.T_to_from));
   if (match->inverse_distance * options_.min_distance_m > 1.0) return false;
@@ -183,7 +184,9 @@ std::optional<CrossCameraMatch> CrossCameraMatcher::search(const Pair& pair, con
   for (const Candidate& candidate : candidates) {
     CrossCameraMatch match;
     double correlation = -1;
-    if (!refine(pair, point, candidate.inverse_distance, options_.search_level, &match, &correlation)) continue;
+    if (!refine(pair, point, candidate.inverse_distance, options_.search_level, WarpModel::kTranslation, &match,
+                &correlation))
+      continue;
     if (best && (match.point.pixel - best->point.pixel).norm() < kSameMatchPx) continue;
     if (correlation > best_correlation) {
       second_correlation = best_correlation;
@@ -200,12 +203,12 @@ std::optional<CrossCameraMatch> CrossCameraMatcher::search(const Pair& pair, con
 }
 
 std::optional<CrossCameraMatch> CrossCameraMatcher::rematch(const Pair& pair, const ImagePoint& point,
-                                                            double inverse_distance) const {
+                                                            double inverse_distance, WarpModel model) const {
   CrossCameraMatch match;
   double correlation = -1;
   // The finest level alone mostly suffices.
-  if (!refine(pair, point, inverse_distance, 0, &match, &correlation) &&
-      !refine(pair, point, inverse_distance, std::min(1, options_.search_level), &match, &correlation)) {
+  if (!refine(pair, point, inverse_distance, 0, model, &match, &correlation) &&
+      !refine(pair, point, inverse_distance, std::min(1, options_.search_level), model, &match, &correlation)) {
     return std::nullopt;
   }
   return match;

@@ -15,6 +15,7 @@ constexpr int kMaxReferenceFailures = 3;
 constexpr double kGoodPredictionPx = 4.0;
 constexpr int kFewLevels = 2;
 constexpr std::size_t kMinPredictionErrors = 10;
+constexpr double kCurvatureStep = 0.35;  // of the size of a patch
 
 }  // namespace
 
@@ -25,7 +26,11 @@ TemporalTracker::TemporalTracker(const CameraRig& rig, const FeatureRegions& reg
       options_(options),
       flow_(opticalFlowOptions(options)),
       max_prediction_error_(rig.size(), std::numeric_limits<double>::infinity()),
-      prediction_errors_(rig.size()) {}
+      prediction_errors_(rig.size()) {
+  for (const RigCamera& camera : rig.cameras()) {
+    curvatures_.emplace_back(camera.model, kCurvatureStep * options.patch_size_px);
+  }
+}
 
 int TemporalTracker::track(const FramePair& frames, int camera, std::vector<Feature*> features,
                            FeatureTrackerCounters* counters) {
@@ -65,8 +70,8 @@ int TemporalTracker::trackLevels(const FramePair& frames, int camera, int levels
     if (!found[i]) continue;
     Feature& feature = *features[i];
     Eigen::Vector2d pixel(flowed[i].x, flowed[i].y);
-    if (feature.owner != camera) cutReference(previous, feature.points[camera].pixel, &feature);
-    if (!alignToReference(current, &feature, &pixel)) {
+    if (feature.owner != camera) cutReference(camera, previous, feature.points[camera].pixel, &feature);
+    if (!alignToReference(camera, current, &feature, &pixel)) {
       unaligned.push_back(&feature);
       unaligned_origins.push_back(origins[i]);
       unaligned_points.push_back(flowed[i]);
@@ -85,7 +90,7 @@ int TemporalTracker::trackLevels(const FramePair& frames, int camera, int levels
       ++counters->rejected_forward_backward;
     } else if (advance(camera, {unaligned_points[i].x, unaligned_points[i].y}, T_cur_prev, &feature)) {
       if (!feature.reference || ++feature.reference->failures >= kMaxReferenceFailures) {
-        cutReference(current, feature.points[camera].pixel, &feature);
+        cutReference(camera, current, feature.points[camera].pixel, &feature);
       }
       ++tracked;
     }
@@ -137,12 +142,15 @@ void TemporalTracker::endFrame() {
   }
 }
 
-bool TemporalTracker::alignToReference(const FlowPyramid& pyramid, Feature* feature, Eigen::Vector2d* pixel) const {
+bool TemporalTracker::alignToReference(int camera, const FlowPyramid& pyramid, Feature* feature,
+                                       Eigen::Vector2d* pixel) const {
   if (!feature->reference) return false;
   ReferencePatch& reference = *feature->reference;
   PatchAlignmentOptions alignment;
   alignment.max_shift_px = options_.max_reference_correction_px;
-  PatchWarp warp{*pixel, reference.linear};
+  const Eigen::Matrix<double, 2, 3> curvature =
+      patchCurvature(reference.curvature, curvatures_[camera].at(*pixel), reference.linear);
+  PatchWarp warp{*pixel, reference.linear, curvature};
   if (!reference.patch.align(pyramid.images()[0], alignment, &warp)) return false;
   reference.linear = warp.linear;
   reference.failures = 0;
@@ -150,8 +158,10 @@ bool TemporalTracker::alignToReference(const FlowPyramid& pyramid, Feature* feat
   return true;
 }
 
-void TemporalTracker::cutReference(const FlowPyramid& pyramid, const Eigen::Vector2d& pixel, Feature* feature) const {
+void TemporalTracker::cutReference(int camera, const FlowPyramid& pyramid, const Eigen::Vector2d& pixel,
+                                   Feature* feature) const {
   if (!feature->reference) feature->reference = std::make_unique<ReferencePatch>();
+  feature->reference->curvature = curvatures_[camera].at(pixel);
   feature->reference->linear.setIdentity();
   feature->reference->failures = 0;
   if (!feature->reference->patch.cut(pyramid.images()[0], {pixel, Eigen::Matrix2d::Identity()}, options_.patch_size_px,

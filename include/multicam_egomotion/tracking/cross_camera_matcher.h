@@ -50,7 +50,8 @@ class CrossCameraMatcher {
   std::optional<CrossCameraMatch> search(const Pair& pair, const ImagePoint& point) const;
 
   /// Refines from a known inverse distance [1/m] of the previous frame.
-  std::optional<CrossCameraMatch> rematch(const Pair& pair, const ImagePoint& point, double inverse_distance) const;
+  std::optional<CrossCameraMatch> rematch(const Pair& pair, const ImagePoint& point, double inverse_distance,
+                                          WarpModel model = WarpModel::kTranslation) const;
 
  private:
   struct Candidate {
@@ -61,7 +62,7 @@ class CrossCameraMatcher {
   bool warpAt(const Pair& pair, const ImagePoint& point, double inverse_distance, PatchWarp* warp) const;
   Eigen::Matrix<double, 2, 3> inverseCurvature(const Pair& pair, const ImagePoint& point, double inverse_distance,
                                                const Eigen::Vector2d& pixel) const;
-  bool refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level,
+  bool refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level, WarpModel model,
               CrossCameraMatch* match, double* correlation) const;
   bool reverses(const Pair& pair, const ImagePoint& point, const CrossCameraMatch& match) const;
   void collectCandidates(const Pair& pair, const ImagePoint& point, std::vector<Candidate>* candidates) const;

@@ -10,6 +10,7 @@
 #include "multicam_egomotion/tracking/feature_regions.h"
 #include "multicam_egomotion/tracking/feature_tracker_counters.h"
 #include "multicam_egomotion/tracking/feature_tracker_options.h"
+#include "multicam_egomotion/tracking/image_curvature.h"
 #include "multicam_egomotion/tracking/optical_flow.h"
 
 namespace multicam_egomotion {
@@ -40,9 +41,9 @@ class TemporalTracker {
   /// Takes over how good the predictions of the frame were, for the next one.
   void endFrame();
 
-  /// Takes the reference patch of a feature about `pixel` [px] of an image of its owner; where there is no texture it
+  /// Takes the reference patch of a feature about `pixel` [px] of an image of `camera`; where there is no texture it
   /// has none then.
-  void cutReference(const FlowPyramid& pyramid, const Eigen::Vector2d& pixel, Feature* feature) const;
+  void cutReference(int camera, const FlowPyramid& pyramid, const Eigen::Vector2d& pixel, Feature* feature) const;
 
   const OpticalFlowOptions& flow() const { return flow_; }
 
@@ -51,12 +52,13 @@ class TemporalTracker {
                   FeatureTrackerCounters* counters);
   Eigen::Vector2d predict(int camera, const Eigen::Isometry3d& T_cur_prev, const Feature& feature) const;
   bool advance(int camera, const Eigen::Vector2d& pixel, const Eigen::Isometry3d& T_cur_prev, Feature* feature) const;
-  bool alignToReference(const FlowPyramid& pyramid, Feature* feature, Eigen::Vector2d* pixel) const;
+  bool alignToReference(int camera, const FlowPyramid& pyramid, Feature* feature, Eigen::Vector2d* pixel) const;
 
   const CameraRig& rig_;
   const FeatureRegions& regions_;
   FeatureTrackerOptions options_;
   OpticalFlowOptions flow_;
+  std::vector<ImageCurvature> curvatures_;  ///< by camera
   /// Error [px] that 9 of 10 predictions of the last frame stayed within, by camera.
   std::vector<double> max_prediction_error_;
   std::vector<std::vector<float>> prediction_errors_;

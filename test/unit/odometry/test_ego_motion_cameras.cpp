@@ -13,7 +13,7 @@
 namespace multicam_egomotion {
 namespace {
 
-constexpr double kStretch = 20.0;  // over which drift is measured [m]
+constexpr double kStretch = 50.0;  // over which drift is measured [m]
 
 /// Ten seconds of a vehicle with a camera to each side, at half the resolution.
 class SurroundDrive {
@@ -70,7 +70,7 @@ class SurroundDrive {
  private:
   static Scenario scenario() {
     SimulationOptions options;
-    options.duration_s = 10.0;
+    options.duration_s = 20.0;
     Scenario scenario = makeScenario("car_surround", options);
     scenario.rig = scaledRig(scenario.rig, 0.5);
     return scenario;
