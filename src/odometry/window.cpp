@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
@@ -20,6 +21,7 @@ constexpr double kMovingSigmas = 5.0;      // error of a track at a pose found w
 constexpr int kManyKnown = 60;             // landmarks that do without newcomers
 constexpr int kFramesOfNewcomers = 3;
 constexpr double kRestParallax = 0.5;  // between two frames [px]
+constexpr int kFewLandmarks = 20;      // seen on both sides of a motion, below which its prediction counts as well
 constexpr int kMinLandmarks = 6;       // tracks that the newest frame shares with older ones, below which it fails
 
 BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
@@ -82,8 +84,20 @@ void Window::initializeLandmarks() {
   }
 }
 
+// How many landmarks are seen both before and after each motion between states, by its later state.
+std::vector<int> Window::landmarksAcross() const {
+  std::vector<int> across(states_.size() + 1, 0);
+  for (const auto& [track, landmark] : landmarks_) {
+    ++across[landmark.observations.front().pose + 1];
+    --across[landmark.observations.back().pose + 1];
+  }
+  std::partial_sum(across.begin(), across.end(), across.begin());
+  return across;
+}
+
 BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
   BundleAdjustment bundle;
+  const std::vector<int> across = landmarksAcross();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     bundle.poses.push_back(states_[i].pose);
     if (i == 0) continue;
@@ -94,7 +108,9 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
     factor.R_a_b = motion.T_a_b.linear();
     factor.rotation_information = symmetricInverse(motion.rotation_covariance);
     factor.p_b_a = motion.T_a_b.translation();
-    if (motion.use_translation) factor.translation_information = symmetricInverse(motion.translation_covariance);
+    if (motion.use_translation || across[i] < kFewLandmarks) {
+      factor.translation_information = symmetricInverse(motion.translation_covariance);
+    }
     bundle.factors.push_back(factor);
   }
   for (const auto& [track, landmark] : landmarks_) {

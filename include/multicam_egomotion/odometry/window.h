@@ -102,6 +102,7 @@ class Window {
   bool wantsKeyframe(WindowEstimate* estimate) const;
   void dropState(int index);
   void marginalizeOldest();
+  std::vector<int> landmarksAcross() const;
   BundleAdjustment makeBundle(std::vector<TrackId>* tracks) const;
 
   WindowOptions options_;

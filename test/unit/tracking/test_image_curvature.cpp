@@ -89,7 +89,8 @@ TEST(ImageCurvature, LeavesNoBiasInTracks) {
                 (now * camera.T_body_cam).inverse() * then * camera.T_body_cam * (distance * a.bearing), &expected))
           continue;
         const Eigen::Vector2d flow = expected - a.pixel;
-        if (flow.norm() > 5.0) along.push_back(flow.normalized().dot(b.pixel - expected));
+        const bool inwards = flow.x() * (160.0 - a.pixel.x()) > 0.0;
+        if (inwards && flow.norm() > 5.0) along.push_back(flow.normalized().dot(b.pixel - expected));
       }
     }
   }
