@@ -310,7 +310,7 @@ class EgoMotion::Impl {
     if (!estimate.ok) return false;
     tracker_.remove(estimate.outliers);
     if (estimate.keyframe) tracker_.markKeyframe();
-    tracker_.resume(window_.unseen(), estimate.relative.T_a_b);
+    if (rig_.size() > 1) tracker_.resume(window_.unseen(), estimate.relative.T_a_b);
     inlier_tracks_.clear();
     inlier_tracks_.insert(estimate.inliers.begin(), estimate.inliers.end());
 

@@ -184,9 +184,9 @@ std::optional<CrossCameraMatch> CrossCameraMatcher::search(const Pair& pair, con
   for (const Candidate& candidate : candidates) {
     CrossCameraMatch match;
     double correlation = -1;
-    if (!refine(pair, point, candidate.inverse_distance, options_.search_level, WarpModel::kTranslation, &match,
-                &correlation))
-      continue;
+    const bool found = refine(pair, point, candidate.inverse_distance, options_.search_level, WarpModel::kTranslation,
+                              &match, &correlation);
+    if (!found) continue;
     if (best && (match.point.pixel - best->point.pixel).norm() < kSameMatchPx) continue;
     if (correlation > best_correlation) {
       second_correlation = best_correlation;

@@ -10,8 +10,12 @@
 #include <nodelet/loader.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <pluginlib/class_loader.hpp>
 
@@ -45,6 +49,14 @@ struct Instance {
 bool starved() {
   double load = 0.0;
   return getloadavg(&load, 1) == 1 && load > std::thread::hardware_concurrency();
+}
+
+/// Memory of this process that is in use [MB].
+double residentMegabytes() {
+  std::ifstream statm("/proc/self/statm");
+  double size = 0.0, resident = 0.0;
+  statm >> size >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
 class NodeletManager : public ::testing::Test {
@@ -145,6 +157,26 @@ TEST_F(NodeletManager, NeighboursDoNotDisturbEachOther) {
   EXPECT_EQ(a.last_motion->odom_epoch, 0u);
   ASSERT_TRUE(manager_.clear());
   EXPECT_TRUE(waitFor([] { return CameraNodelet::held() == 0; }, 1.0)) << CameraNodelet::held();
+}
+
+TEST_F(NodeletManager, ReloadingGivesTheMemoryBack) {
+  const char* wanted = std::getenv("MULTICAM_EGOMOTION_RELOADS");
+  const int rounds = wanted ? std::max(4, std::atoi(wanted)) : 12;
+  Instance a("reloaded");
+  ASSERT_TRUE(loadCamera());
+  std::vector<double> megabytes;  // of the process after each round, with the odometry unloaded
+  for (int round = 0; round < rounds; ++round) {
+    ASSERT_TRUE(load(a.nodelet)) << "round " << round;
+    ASSERT_TRUE(morePoses(a, 5)) << "round " << round;
+    ASSERT_TRUE(manager_.unload(a.nodelet));
+    megabytes.push_back(residentMegabytes());
+  }
+  const double half = megabytes[rounds / 2], end = megabytes.back();
+  std::printf("%.1f MB after the first of %d reloads, %.1f MB after half of them, %.1f MB after all\n", megabytes[0],
+              rounds, half, end);
+  // An odometry holds some 20 MB.
+  EXPECT_LT(end - half, 5.0);
+  ASSERT_TRUE(manager_.clear());
 }
 
 TEST_F(NodeletManager, ParametersChangeBetweenFrames) {

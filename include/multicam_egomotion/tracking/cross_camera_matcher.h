@@ -49,7 +49,7 @@ class CrossCameraMatcher {
   /// Searches along the whole epipolar curve.
   std::optional<CrossCameraMatch> search(const Pair& pair, const ImagePoint& point) const;
 
-  /// Refines from a known inverse distance [1/m] of the previous frame.
+  /// Refines from a known inverse distance [1/m] of the previous frame. `model`: what is estimated in the finest image.
   std::optional<CrossCameraMatch> rematch(const Pair& pair, const ImagePoint& point, double inverse_distance,
                                           WarpModel model = WarpModel::kTranslation) const;
 

@@ -16,8 +16,8 @@ namespace multicam_egomotion {
 struct ReferencePatch {
   PatchTemplate patch;
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();  ///< from the reference patch to the newest image
-  Eigen::Matrix<double, 2, 3> curvature;                 ///< of the image where it was cut
-  int failures = 0;                                      ///< frames in a row in which the alignment failed
+  Eigen::Matrix<double, 2, 3> curvature = Eigen::Matrix<double, 2, 3>::Zero();  ///< of the image where it was cut
+  int failures = 0;  ///< frames in a row in which the alignment failed
 };
 
 /// One feature of the tracker in its newest frame.

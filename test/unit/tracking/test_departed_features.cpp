@@ -17,7 +17,7 @@ namespace {
 /// A vehicle with four cameras that drives, and where its features are.
 class Drive {
  public:
-  static constexpr int kFirst = 60, kFrames = 15;
+  static constexpr int kFirst = 60, kFrames = 9;
 
   Drive() : simulator_(scenario()) {
     for (int i = 0; i < kFrames; ++i) images_.push_back(simulator_.renderFrame(kFirst + i, 2));
