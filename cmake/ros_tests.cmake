@@ -28,16 +28,15 @@ set(fault_table_timeout 600)
 if(MULTICAM_EGOMOTION_SANITIZE)
   set(fault_table_timeout 2400)
 endif()
-# In parts that run at the same time.
-foreach(part simulated:0 simulated:1 recorded:0 recorded:1)
-  string(REPLACE ":" ";" part ${part})
-  list(GET part 0 recording)
-  list(GET part 1 shard)
-  set(name test_fault_table_${recording}_${shard})
-  add_test(NAME ${name} COMMAND test_fault_table --gtest_filter=${recording}/*
-    WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${fault_table_timeout} COST 50
-    ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${shard}" SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+# Each in two parts that run at the same time.
+foreach(recording simulated recorded)
+  foreach(part 0 1)
+    set(name test_fault_table_${recording}_${part})
+    add_test(NAME ${name} COMMAND test_fault_table --gtest_filter=${recording}/*
+      WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${fault_table_timeout} COST 50
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${part}" SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+  endforeach()
 endforeach()
 add_dependencies(tests test_fault_table)
 

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 # SPDX-License-Identifier: BSD-3-Clause
 # AddressSanitizer and UndefinedBehaviorSanitizer over the unit tests and the offline fault table, in build/sanitized.
-# test_sanitized.sh [--all] [CTEST_ARGUMENT ...]; --all takes the rostests, the fuzzers' corpora, the tests that are long
-# because they repeat trials, and every check of the sanitizers. Without it those are left out that take most time and find
-# what AddressSanitizer finds as well: null, alignment, pointers, objects.
+# test_sanitized.sh [--all] [CTEST_ARGUMENT ...]; --all takes the rostests, the fuzzers' corpora, the tests that are
+# long because they repeat trials, and every check of the sanitizers. Without it those checks are left out that take
+# most time: null, alignment, pointers and objects, and the stack after return.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/environment.bash"
 

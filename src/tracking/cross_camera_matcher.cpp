@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multicam_egomotion/tracking/image_curvature.h"
+
 namespace multicam_egomotion {
 namespace {
 
@@ -61,13 +63,8 @@ Eigen::Matrix<double, 2, 3> CrossCameraMatcher::inverseCurvature(const Pair& pai
     seen = seen && depth > 0.0 && from.project(depth * direction - shift, &mapped);
     return mapped;
   };
-  const double h = 0.35 * options_.patch_size_px;
-  const Eigen::Vector2d twice_centre = 2.0 * map(0, 0);
-  Eigen::Matrix<double, 2, 3> curvature;
-  curvature.col(0) = map(h, 0) + map(-h, 0) - twice_centre;
-  curvature.col(2) = map(0, h) + map(0, -h) - twice_centre;
-  curvature.col(1) = map(h, h) + map(-h, -h) - twice_centre - curvature.col(0) - curvature.col(2);
-  return seen ? Eigen::Matrix<double, 2, 3>(curvature / (2.0 * h * h)) : Eigen::Matrix<double, 2, 3>::Zero();
+  const Eigen::Matrix<double, 2, 3> curvature = secondOrder(map, 0.35 * options_.patch_size_px);
+  return seen ? curvature : Eigen::Matrix<double, 2, 3>::Zero();
 }
 
 bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, double inverse_distance, int first_level,

@@ -202,8 +202,8 @@ class FeatureTracker::Impl {
 
   void makeReference(Feature* feature) {
     const FlowPyramid& pyramid = images_.current[feature->owner];
-    if (!pyramid.empty())
-      temporal_.cutReference(feature->owner, pyramid, feature->points[feature->owner].pixel, feature);
+    if (pyramid.empty()) return;
+    temporal_.cutReference(feature->owner, pyramid, feature->points[feature->owner].pixel, feature);
   }
 
   void matchAcrossCameras() {

@@ -3,7 +3,7 @@
 #include "multicam_egomotion/tracking/image_curvature.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 
 #include "multicam_egomotion/tracking/image_point.h"
 
@@ -14,7 +14,7 @@ using Curvature = Eigen::Matrix<double, 2, 3>;
 
 constexpr int kSpacing = 16;  // of the nodes [px]
 
-Curvature secondDifferences(const CameraModel& model, const Eigen::Vector2d& pixel, double step) {
+Curvature curvatureAt(const CameraModel& model, const Eigen::Vector2d& pixel, double step) {
   ImagePoint point;
   if (!makeImagePoint(model, pixel, &point)) return Curvature::Zero();
   const Eigen::Matrix<double, 2, 3> to_pixel = bearingToPixel(point);
@@ -24,11 +24,8 @@ Curvature secondDifferences(const CameraModel& model, const Eigen::Vector2d& pix
     seen = seen && model.unproject(pixel + Eigen::Vector2d(x, y), &bearing);
     return Eigen::Vector2d(to_pixel * bearing / point.bearing.dot(bearing));
   };
-  Curvature curvature;
-  curvature.col(0) = inPlane(step, 0) + inPlane(-step, 0);
-  curvature.col(2) = inPlane(0, step) + inPlane(0, -step);
-  curvature.col(1) = inPlane(step, step) + inPlane(-step, -step) - curvature.col(0) - curvature.col(2);
-  return seen ? Curvature(curvature / (2.0 * step * step)) : Curvature::Zero();
+  const Curvature curvature = secondOrder(inPlane, step);
+  return seen ? curvature : Curvature::Zero();
 }
 
 }  // namespace
@@ -38,7 +35,7 @@ ImageCurvature::ImageCurvature(const CameraModel& model, double step_px)
   nodes_.reserve(static_cast<std::size_t>(columns_) * rows_);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      nodes_.push_back(secondDifferences(model, {kSpacing * column, kSpacing * row}, step_px));
+      nodes_.push_back(curvatureAt(model, {kSpacing * column, kSpacing * row}, step_px));
     }
   }
 }

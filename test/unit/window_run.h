@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_poses.h"
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/frame_consensus.h"
@@ -54,12 +55,6 @@ struct WindowRun {
   double median_direction_error = 0.0;      ///< of moving frames [rad]
   int failures = 0, frames = 0, outliers_found = 0, outliers_missed = 0, inliers_lost = 0, observations = 0;
 };
-
-inline std::vector<Eigen::Isometry3d> cameraPosesOf(const CameraRig& rig) {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const RigCamera& camera : rig.cameras()) poses.push_back(camera.T_body_cam);
-  return poses;
-}
 
 inline TrackedFrame withoutTracks(const TrackedFrame& frame, const std::vector<TrackId>& gone) {
   TrackedFrame kept;

@@ -9,6 +9,19 @@
 
 namespace multicam_egomotion {
 
+/// Second order [1/px] of a map of the image about (0, 0): what multiplies (x^2, x y, y^2). Second differences over
+/// +- `step_px`.
+template <typename Map>
+Eigen::Matrix<double, 2, 3> secondOrder(const Map& map, double step_px) {
+  const double h = step_px;
+  const Eigen::Vector2d twice_centre = 2.0 * map(0.0, 0.0);
+  Eigen::Matrix<double, 2, 3> order;
+  order.col(0) = map(h, 0.0) + map(-h, 0.0) - twice_centre;
+  order.col(2) = map(0.0, h) + map(0.0, -h) - twice_centre;
+  order.col(1) = map(h, h) + map(-h, -h) - twice_centre - order.col(0) - order.col(2);
+  return order / (2.0 * h * h);
+}
+
 /// Second order of a camera's image. Between two places of an image a small patch of the scene does not change by an
 /// affine map alone: the lens and the flat image bend it, near the edge of a wide field of view by some hundredths of a
 /// pixel on average over the patch.

@@ -331,8 +331,9 @@ TEST(Window, PointsAreWhereTheyAre) {
   int near = 0;
   for (const Eigen::Vector3d& point : points) {
     double nearest = 1e9;
-    for (const auto& [id, truth] : run.tracks().points)
+    for (const auto& [id, truth] : run.tracks().points) {
       nearest = std::min(nearest, (point - truth).norm() / truth.norm());
+    }
     near += nearest < 0.1;
   }
   EXPECT_GT(near, 0.9 * points.size());

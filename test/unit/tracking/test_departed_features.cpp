@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "camera_poses.h"
 #include "multicam_egomotion/tracking/feature_tracker.h"
 #include "scaled_rig.h"
 #include "simulator/simulator.h"
@@ -50,12 +51,6 @@ const Drive& drive() {
   return drive;
 }
 
-std::vector<Eigen::Isometry3d> cameraPoses() {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const RigCamera& camera : drive().rig().cameras()) poses.push_back(camera.T_body_cam);
-  return poses;
-}
-
 struct Passed {
   std::vector<double> errors;  ///< where another camera saw a feature than the first that did [px]
   int handed_over = 0;
@@ -71,7 +66,7 @@ Passed run(int resume_every, double stretch = 1.0) {
   std::map<TrackId, First> firsts;
   Passed passed;
   for (int i = 0; i < Drive::kFrames; ++i) {
-    const TrackedFrame frame = tracker.track(drive().images(i), drive().motionTo(i), cameraPoses());
+    const TrackedFrame frame = tracker.track(drive().images(i), drive().motionTo(i), cameraPosesOf(drive().rig()));
     std::map<TrackId, First> unseen = firsts;
     for (const FeatureObservation& seen : frame.observations) {
       unseen.erase(seen.track);
@@ -85,8 +80,9 @@ Passed run(int resume_every, double stretch = 1.0) {
     }
     if (resume_every == 0 || i % resume_every != 0) continue;
     std::vector<TrackedPoint> points;
-    for (const auto& [track, first] : unseen)
+    for (const auto& [track, first] : unseen) {
       points.push_back({track, stretch * (drive().pose(i).inverse() * first.point)});
+    }
     tracker.resume(points, drive().motionTo(i));
     passed.handed_over += tracker.counters().handed_over;
   }

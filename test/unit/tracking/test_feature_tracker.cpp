@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "camera_poses.h"
 #include "multicam_egomotion/tracking/feature_tracker.h"
 #include "simulator/simulator.h"
 
@@ -83,12 +84,6 @@ RigCamera makeCamera(const std::string& name, Distortion distortion, double x, d
 CameraRig stereoRig() {
   return CameraRig(
       {makeCamera("left", Distortion::kRadtan, -0.1, 0.0), makeCamera("right", Distortion::kRadtan, 0.1, 0.0)});
-}
-
-std::vector<Eigen::Isometry3d> cameraPoses(const CameraRig& rig) {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const RigCamera& camera : rig.cameras()) poses.push_back(camera.T_body_cam);
-  return poses;
 }
 
 FrameSet renderAll(const CameraRig& rig, const Eigen::Isometry3d& T_world_body) {
@@ -170,7 +165,7 @@ TEST(FeatureTracker, FollowsTheWallInTimeAndAcrossCameras) {
     // Only the rotation is predicted.
     Eigen::Isometry3d T_prev_cur = Eigen::Isometry3d::Identity();
     T_prev_cur.linear() = T(0).linear().transpose() * T(1).linear();
-    const TrackedFrame frame = tracker.track(renderAll(rig, T(k)), T_prev_cur, cameraPoses(rig));
+    const TrackedFrame frame = tracker.track(renderAll(rig, T(k)), T_prev_cur, cameraPosesOf(rig));
     if (k % 5 == 0) tracker.markKeyframe();
     EXPECT_GT(tracker.counters().cross_camera_matches, 60);
     EXPECT_LT(quantile(crossCameraErrors(frame, rig, T(k)), 0.5), 0.15);
@@ -192,7 +187,8 @@ TEST(FeatureTracker, DoesNotDriftWhenStandingStill) {
   std::map<std::pair<TrackId, int>, std::vector<Eigen::Vector2d>> paths;
   const FrameSet clean = renderAll(rig, pose(0, 0, 0));
   for (int k = 0; k < kFrames; ++k) {
-    const TrackedFrame frame = tracker.track(withNoise(clean, 3.0, k), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+    const TrackedFrame frame =
+        tracker.track(withNoise(clean, 3.0, k), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     if (k % 10 == 0) tracker.markKeyframe();
     for (const FeatureObservation& o : frame.observations) paths[{o.track, o.camera}].push_back(o.pixel);
   }
@@ -213,7 +209,7 @@ TEST(FeatureTracker, MatchesTurnedFisheyeNeighbours) {
                        makeCamera("right", Distortion::kEquidistant, 0.1, 20.0)});
   FeatureTracker tracker(rig, FeatureTrackerOptions());
   const TrackedFrame frame =
-      tracker.track(renderAll(rig, pose(0, 0, 2.0)), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+      tracker.track(renderAll(rig, pose(0, 0, 2.0)), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
   const std::vector<double> errors = crossCameraErrors(frame, rig, pose(0, 0, 2.0));
   EXPECT_GT(errors.size(), 50u);
   EXPECT_LT(quantile(errors, 0.5), 0.2);
@@ -229,7 +225,7 @@ TEST(FeatureTracker, MatchesBetweenFisheyesAreUnbiased) {
     const Eigen::Isometry3d T_world_body = simulator.stateAtFrame(frame).T_world_body;
     FeatureTracker tracker(rig, FeatureTrackerOptions());
     const TrackedFrame tracked =
-        tracker.track(simulator.renderFrame(frame), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+        tracker.track(simulator.renderFrame(frame), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     for (std::size_t i = 1; i < tracked.observations.size(); ++i) {
       const FeatureObservation& first = tracked.observations[i - 1];
       const FeatureObservation& second = tracked.observations[i];
@@ -256,7 +252,7 @@ TEST(FeatureTracker, FeaturesLiveOnInTheNeighbourCamera) {
   TrackedFrame frame;
   // Sliding to the left, features leave the left camera across its right border.
   for (int k = 0; k < 7; ++k) {
-    frame = tracker.track(renderAll(rig, pose(-0.25 * k, 0, 0)), pose(k ? -0.25 : 0, 0, 0), cameraPoses(rig));
+    frame = tracker.track(renderAll(rig, pose(-0.25 * k, 0, 0)), pose(k ? -0.25 : 0, 0, 0), cameraPosesOf(rig));
     if (k == 0) {
       for (const FeatureObservation& o : frame.observations) {
         if (o.camera == 0) first.insert(o.track);
@@ -276,7 +272,7 @@ TEST(FeatureTracker, IdsAreSortedAndNeverReused) {
   TrackId highest = 0;
   for (int k = 0; k < 4; ++k) {
     const TrackedFrame frame =
-        tracker.track(renderAll(rig, pose(0, 0, 0)), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+        tracker.track(renderAll(rig, pose(0, 0, 0)), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     ASSERT_FALSE(frame.observations.empty());
     for (std::size_t i = 1; i < frame.observations.size(); ++i) {
       const FeatureObservation& a = frame.observations[i - 1];
@@ -293,11 +289,11 @@ TEST(FeatureTracker, RemovedTracksDoNotComeBack) {
   const CameraRig rig = stereoRig();
   FeatureTracker tracker(rig, FeatureTrackerOptions());
   const FrameSet frames = renderAll(rig, pose(0, 0, 0));
-  const TrackedFrame before = tracker.track(frames, Eigen::Isometry3d::Identity(), cameraPoses(rig));
+  const TrackedFrame before = tracker.track(frames, Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
   const TrackId removed = before.observations[3].track;
   const TrackId kept = before.observations.back().track;
   tracker.remove({removed, 123456789});
-  const TrackedFrame after = tracker.track(frames, Eigen::Isometry3d::Identity(), cameraPoses(rig));
+  const TrackedFrame after = tracker.track(frames, Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
   const auto has = [&](TrackId id) {
     return std::any_of(after.observations.begin(), after.observations.end(),
                        [id](const FeatureObservation& o) { return o.track == id; });
@@ -310,7 +306,7 @@ TEST(FeatureTracker, ObservationsMapBearingsToPixels) {
   const CameraRig rig = stereoRig();
   FeatureTracker tracker(rig, FeatureTrackerOptions());
   const TrackedFrame frame =
-      tracker.track(renderAll(rig, pose(0, 0, 0)), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+      tracker.track(renderAll(rig, pose(0, 0, 0)), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
   for (const FeatureObservation& o : frame.observations) {
     const Eigen::Vector2d offset(0.3, -0.2);
     Eigen::Vector3d p;
@@ -327,7 +323,7 @@ TEST(FeatureTracker, MaskIsRespected) {
   tracker.setMask(0, mask);
   for (int k = 0; k < 3; ++k) {
     const TrackedFrame frame =
-        tracker.track(renderAll(rig, pose(0.05 * k, 0, 0)), Eigen::Isometry3d::Identity(), cameraPoses(rig));
+        tracker.track(renderAll(rig, pose(0.05 * k, 0, 0)), Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     bool other_camera_left = false;
     for (const FeatureObservation& o : frame.observations) {
       EXPECT_FALSE(o.camera == 0 && o.pixel.x() < kWidth / 2 - 1.0);
@@ -345,20 +341,20 @@ TEST(FeatureTracker, SurvivesBadImages) {
   FeatureTracker tracker(rig, FeatureTrackerOptions());
   const FrameSet good = renderAll(rig, pose(0, 0, 0));
   const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
-  const std::size_t usual = tracker.track(good, still, cameraPoses(rig)).observations.size();
+  const std::size_t usual = tracker.track(good, still, cameraPosesOf(rig)).observations.size();
   for (const int grey : {0, 128, 255}) {
     FrameSet blank = good;
     for (CameraImage& image : blank.images) image.grey = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(grey));
-    EXPECT_TRUE(tracker.track(blank, still, cameraPoses(rig)).observations.empty());
-    EXPECT_GT(tracker.track(good, still, cameraPoses(rig)).observations.size(), usual / 2);
+    EXPECT_TRUE(tracker.track(blank, still, cameraPosesOf(rig)).observations.empty());
+    EXPECT_GT(tracker.track(good, still, cameraPosesOf(rig)).observations.size(), usual / 2);
   }
-  EXPECT_TRUE(tracker.track(FrameSet(), still, cameraPoses(rig)).observations.empty());
+  EXPECT_TRUE(tracker.track(FrameSet(), still, cameraPosesOf(rig)).observations.empty());
 
   FrameSet wrong = good;
   wrong.images[0].grey = cv::Mat(kHeight / 2, kWidth, CV_8UC1, cv::Scalar(0));
   wrong.images[1].camera = 7;
   wrong.images.push_back({1, 0, cv::Mat()});
-  EXPECT_TRUE(tracker.track(wrong, still, cameraPoses(rig)).observations.empty());
+  EXPECT_TRUE(tracker.track(wrong, still, cameraPosesOf(rig)).observations.empty());
   EXPECT_EQ(tracker.counters().ignored_images, 3u);
 }
 
@@ -367,10 +363,10 @@ TEST(FeatureTracker, MissingCameraStartsAnew) {
   FeatureTracker tracker(rig, FeatureTrackerOptions());
   const Eigen::Isometry3d still = Eigen::Isometry3d::Identity();
   const FrameSet both = renderAll(rig, pose(0, 0, 0));
-  const TrackedFrame before = tracker.track(both, still, cameraPoses(rig));
+  const TrackedFrame before = tracker.track(both, still, cameraPosesOf(rig));
   FrameSet right_only = both;
   right_only.images.erase(right_only.images.begin());
-  const TrackedFrame during = tracker.track(right_only, still, cameraPoses(rig));
+  const TrackedFrame during = tracker.track(right_only, still, cameraPosesOf(rig));
   const ByTrackAndCamera was = indexed(before);
   int carried_over = 0;
   for (const FeatureObservation& o : during.observations) {
@@ -378,7 +374,7 @@ TEST(FeatureTracker, MissingCameraStartsAnew) {
     carried_over += was.count({o.track, 1});
   }
   EXPECT_GT(carried_over, 50);
-  const TrackedFrame after = tracker.track(both, still, cameraPoses(rig));
+  const TrackedFrame after = tracker.track(both, still, cameraPosesOf(rig));
   EXPECT_GT(std::count_if(after.observations.begin(), after.observations.end(),
                           [](const FeatureObservation& o) { return o.camera == 0; }),
             50);
@@ -390,9 +386,9 @@ TEST(FeatureTracker, IsDeterministicOnAnyNumberOfThreads) {
   for (int k = 0; k < 5; ++k) {
     const FrameSet frames = withNoise(renderAll(rig, pose(0.04 * k, 0, 0.1 * k)), 2.0, k);
     cv::setNumThreads(1);
-    const TrackedFrame first = a.track(frames, Eigen::Isometry3d::Identity(), cameraPoses(rig));
+    const TrackedFrame first = a.track(frames, Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     cv::setNumThreads(-1);  // as many as there are
-    const TrackedFrame second = b.track(frames, Eigen::Isometry3d::Identity(), cameraPoses(rig));
+    const TrackedFrame second = b.track(frames, Eigen::Isometry3d::Identity(), cameraPosesOf(rig));
     ASSERT_EQ(first.observations.size(), second.observations.size());
     for (std::size_t i = 0; i < first.observations.size(); ++i) {
       EXPECT_EQ(first.observations[i].track, second.observations[i].track);

@@ -85,9 +85,8 @@ TEST(ImageCurvature, LeavesNoBiasInTracks) {
         if (a.track != b.track || std::abs(a.pixel.x() - 160.0) < 80.0) continue;
         const double distance = simulator.distance(0, then, a.pixel);
         Eigen::Vector2d expected;
-        if (!camera.model.project(
-                (now * camera.T_body_cam).inverse() * then * camera.T_body_cam * (distance * a.bearing), &expected))
-          continue;
+        const Eigen::Isometry3d T_now_then = (now * camera.T_body_cam).inverse() * then * camera.T_body_cam;
+        if (!camera.model.project(T_now_then * (distance * a.bearing), &expected)) continue;
         const Eigen::Vector2d flow = expected - a.pixel;
         const bool inwards = flow.x() * (160.0 - a.pixel.x()) > 0.0;
         if (inwards && flow.norm() > 5.0) along.push_back(flow.normalized().dot(b.pixel - expected));
