@@ -127,6 +127,7 @@ class EgoMotion::Impl {
       all.push_back(
           "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or baselines wrong?");
     }
+    for (const std::string& fault : tracker_.calibrationCheck().faults()) all.push_back(fault);
     return all;
   }
 

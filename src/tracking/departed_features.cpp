@@ -69,7 +69,7 @@ bool DepartedFeatures::findIn(int camera, const Departed& departed, const Tracke
                                       T_cam_body * departed.T_body_cam};
   const double distance = (point.position - departed.T_body_cam.translation()).norm();
   const auto match = matcher_.rematch(pair, departed.point, 1.0 / distance, WarpModel::kAffine);
-  if (!match || !regions_.contain(camera, match->point.pixel)) return false;
+  if (!match || match->contradicts_calibration || !regions_.contain(camera, match->point.pixel)) return false;
   feature->id = point.track;
   feature->owner = camera;
   feature->inverse_distance = 1.0 / position.norm();

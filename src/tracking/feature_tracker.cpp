@@ -34,6 +34,7 @@ class FeatureTracker::Impl {
         regions_(rig_, options.patch_size_px / 2 + 1),
         temporal_(rig_, regions_, options),
         matcher_(rig_, crossCameraOptions(options)),
+        calibration_check_(rig_),
         departed_(rig_, regions_, matcher_) {
     check(options);
     makeDetectors();
@@ -79,6 +80,7 @@ class FeatureTracker::Impl {
     dropDead();
     newborn_ = next_id_;
     detect();
+    checkCalibration();
     return output(frames.stamp_ns);
   }
 
@@ -118,6 +120,7 @@ class FeatureTracker::Impl {
   }
 
   const FeatureTrackerCounters& counters() const { return counters_; }
+  const CalibrationCheck& calibrationCheck() const { return calibration_check_; }
 
  private:
   static bool beforeId(const Feature& feature, TrackId id) { return feature.id < id; }
@@ -213,6 +216,7 @@ class FeatureTracker::Impl {
       for (int camera = 0; camera < rig_.size(); ++camera) {
         if (camera == feature.owner) continue;
         const bool was_seen = std::exchange(feature.seen[camera], false);
+        feature.beside[camera] = false;
         matchInto(camera, was_seen, &feature, counters);
         if (was_seen && !feature.seen[camera]) ++counters->rejected_epipolar;
       }
@@ -236,10 +240,24 @@ class FeatureTracker::Impl {
       match = matcher_.search(pair, point);
     }
     if (!match || !regions_.contain(camera, match->point.pixel)) return;
-    feature->seen[camera] = true;
     feature->points[camera] = match->point;
+    feature->beside[camera] = match->contradicts_calibration;
+    if (match->contradicts_calibration) return;
+    feature->seen[camera] = true;
     feature->inverse_distance = match->inverse_distance;
     ++counters->cross_camera_matches;
+  }
+
+  void checkCalibration() {
+    for (const Feature& feature : features_) {
+      const int owner = feature.owner;
+      for (const int camera : rig_.overlappingCameras(owner)) {
+        if (!feature.seen[camera] && !feature.beside[camera]) continue;
+        calibration_check_.add(owner, feature.points[owner], camera, feature.points[camera],
+                               images_.T_body_cam[camera].inverse() * images_.T_body_cam[owner]);
+      }
+    }
+    calibration_check_.endFrame();
   }
 
   void dropDead() {
@@ -301,6 +319,7 @@ class FeatureTracker::Impl {
   FeatureRegions regions_;
   TemporalTracker temporal_;
   CrossCameraMatcher matcher_;
+  CalibrationCheck calibration_check_;
   DepartedFeatures departed_;
   std::vector<CornerDetector> detectors_;
 
@@ -331,5 +350,6 @@ void FeatureTracker::markKeyframe() { impl_->markKeyframe(); }
 void FeatureTracker::remove(const std::vector<TrackId>& tracks) { impl_->remove(tracks); }
 void FeatureTracker::reset() { impl_->reset(); }
 const FeatureTrackerCounters& FeatureTracker::counters() const { return impl_->counters(); }
+const CalibrationCheck& FeatureTracker::calibrationCheck() const { return impl_->calibrationCheck(); }
 
 }  // namespace multicam_egomotion

@@ -27,8 +27,9 @@ struct CrossCameraOptions {
 };
 
 struct CrossCameraMatch {
-  ImagePoint point;               ///< in the second camera
-  double inverse_distance = 0.0;  ///< along the bearing in the first camera [1/m], at least 0
+  ImagePoint point;                      ///< in the second camera
+  double inverse_distance = 0.0;         ///< along the bearing in the first camera [1/m], at least 0
+  bool contradicts_calibration = false;  ///< looks alike, but no point in space is seen in both places
 };
 
 /// Finds features of one camera in the image of another that looks at the same scene at the same time. Patches are
@@ -46,7 +47,8 @@ class CrossCameraMatcher {
     Eigen::Isometry3d T_to_from;
   };
 
-  /// Searches along the whole epipolar curve.
+  /// Searches along the whole epipolar curve. Where nothing on it looks alike, what does beside it is returned as a
+  /// match that contradicts the calibration.
   std::optional<CrossCameraMatch> search(const Pair& pair, const ImagePoint& point) const;
 
   /// Refines from a known inverse distance [1/m] of the previous frame. `model`: what is estimated in the finest image.

@@ -27,7 +27,8 @@ struct Feature {
   bool alive = true;
   double inverse_distance = -1.0;  ///< in the owner, along its bearing [1/m]; negative: unknown
   std::array<bool, CameraRig::kMaxCameras> seen{};
-  std::array<ImagePoint, CameraRig::kMaxCameras> points;  ///< where seen
+  std::array<bool, CameraRig::kMaxCameras> beside{};      ///< where what looks like it contradicts the calibration
+  std::array<ImagePoint, CameraRig::kMaxCameras> points;  ///< where seen or beside
   std::unique_ptr<ReferencePatch> reference;              ///< in the owner
 };
 

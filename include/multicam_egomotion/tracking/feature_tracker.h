@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "multicam_egomotion/geometry/camera_rig.h"
+#include "multicam_egomotion/tracking/calibration_check.h"
 #include "multicam_egomotion/tracking/feature_tracker_counters.h"
 #include "multicam_egomotion/tracking/feature_tracker_options.h"
 #include "multicam_egomotion/tracking/frame_set.h"
@@ -61,6 +62,9 @@ class FeatureTracker {
   void reset();
 
   const FeatureTrackerCounters& counters() const;
+
+  /// What the matches say of the calibration between cameras.
+  const CalibrationCheck& calibrationCheck() const;
 
  private:
   class Impl;

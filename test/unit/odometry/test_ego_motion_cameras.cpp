@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <string>
 #include <vector>
 
 #include "ego_motion_run.h"
@@ -100,6 +103,46 @@ TEST(EgoMotionCameras, OneOfFourLostDriftsLittleMore) {
     for (const EgoMotionResult& one : rest) EXPECT_TRUE(one.has_pose);
     EXPECT_LT(drift_of_rest, 1.5 * drift);
     EXPECT_NEAR(scale, 1.0, 0.004);
+  }
+}
+
+// Cameras that are not mounted as the rig file says no longer find each other's features.
+TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
+  SimulationOptions options;
+  options.duration_s = 3.0;
+  Scenario scenario = makeScenario("handheld_stereo", options);
+  scenario.rig = scaledRig(scenario.rig, 0.5);
+  const Simulator simulator(scenario);
+  Recording recording;
+  recording.imu = simulator.imuSamples();
+  recording.frames = simulator.frames();
+  recording.images = [&](int frame) { return simulator.renderFrame(frame).images; };
+  recording.stamp = [&](int frame) { return simulator.frameStamp(frame); };
+  const auto namesMounting = [](const EgoMotion& odometry) {
+    const std::vector<std::string> faults = odometry.faults();
+    return std::any_of(faults.begin(), faults.end(), [](const std::string& fault) {
+      return fault.find("cam1 disagrees with cam0: turned by") != std::string::npos;
+    });
+  };
+  for (const double turn_deg : {0.0, 1.0}) {
+    std::vector<RigCamera> cameras = scenario.rig.cameras();
+    cameras[1].T_body_cam.rotate(Eigen::AngleAxisd(turn_deg * M_PI / 180.0, Eigen::Vector3d::UnitX()));
+    EgoMotion odometry(CameraRig(cameras), scenario.imu, {});
+    const auto results = RecordingPlayer(recording).play(&odometry, 0, recording.frames);
+    EXPECT_EQ(namesMounting(odometry), turn_deg > 0.0) << turn_deg;
+    const auto published = std::count_if(results.begin(), results.end(), [](const auto& one) { return one.has_pose; });
+    EXPECT_GE(published, recording.frames);
+    double found = 0.0, truth = 0.0;
+    for (const EgoMotionResult& one : results) {
+      if (!one.has_relative_pose) continue;
+      EXPECT_TRUE(one.T_odom_body.pose.matrix().allFinite());
+      found += one.T_previous_body.pose.translation().norm();
+      truth += (simulator.stateAt(one.stamp_ns).T_world_body.translation() -
+                simulator.stateAt(one.previous_stamp_ns).T_world_body.translation())
+                   .norm();
+    }
+    std::printf("cam1 turned by %.1f deg: %.3f of %.3f m\n", turn_deg, found, truth);
+    EXPECT_NEAR(found / truth, 1.0, turn_deg > 0.0 ? 0.3 : 0.02);
   }
 }
 
