@@ -185,9 +185,10 @@ void InertialState::propagate(const ImuSample& sample, double spacing_s) {
 }
 
 void InertialState::hold(std::int64_t stamp_ns, std::int64_t latest_sample_ns) {
-  const auto since = [&](std::int64_t known_ns) {  // variance grows with the square of the time
+  // Variance grows with the square of the time; what is known may be of later.
+  const auto since = [&](std::int64_t known_ns) {
     return 1e-9 * (static_cast<double>(std::max<std::int64_t>(0, last_.stamp_ns - known_ns)) +
-                   static_cast<double>(stamp_ns - known_ns));
+                   static_cast<double>(std::max<std::int64_t>(0, stamp_ns - known_ns)));
   };
   Unseen unseen;
   unseen.rate_density = since(std::max(latest_sample_ns, rate_seen_ns_)) * square(options_.gap_rate_sigma);
