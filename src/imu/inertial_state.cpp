@@ -185,10 +185,10 @@ void InertialState::propagate(const ImuSample& sample, double spacing_s) {
 }
 
 void InertialState::hold(std::int64_t stamp_ns, std::int64_t latest_sample_ns) {
-  // Variance grows with the square of the time; what is known may be of later.
+  // Variance grows with the square of the time. Samples of later only, as after a gap of the buffer, tell nothing.
   const auto since = [&](std::int64_t known_ns) {
-    return 1e-9 * (static_cast<double>(std::max<std::int64_t>(0, last_.stamp_ns - known_ns)) +
-                   static_cast<double>(std::max<std::int64_t>(0, stamp_ns - known_ns)));
+    known_ns = std::min(known_ns, last_.stamp_ns);
+    return 1e-9 * static_cast<double>((last_.stamp_ns - known_ns) + (stamp_ns - known_ns));
   };
   Unseen unseen;
   unseen.rate_density = since(std::max(latest_sample_ns, rate_seen_ns_)) * square(options_.gap_rate_sigma);

@@ -51,7 +51,8 @@ class CrossCameraMatcher {
   /// match that contradicts the calibration.
   std::optional<CrossCameraMatch> search(const Pair& pair, const ImagePoint& point) const;
 
-  /// Refines from a known inverse distance [1/m] of the previous frame. `model`: what is estimated in the finest image.
+  /// Refines from a known inverse distance [1/m] of the previous frame, beside the curve as search() does. `model`:
+  /// what is estimated in the finest image.
   std::optional<CrossCameraMatch> rematch(const Pair& pair, const ImagePoint& point, double inverse_distance,
                                           WarpModel model = WarpModel::kTranslation) const;
 

@@ -412,6 +412,24 @@ TEST(InertialState, ASilentImuIsAGapHoweverOftenItIsAsked) {
   EXPECT_LT(tiltError(across, motion.attitude(10)).norm(), 2 * kOneDegree);
 }
 
+// As where the buffer was cleared: what comes after the hole says nothing of the time within it.
+TEST(InertialState, SamplesOfLaterOnlyAreAGap) {
+  const Trajectory motion;
+  ImuBuffer before, after;
+  for (const ImuSample& sample : samplesOver(motion, -0.5, 7)) {
+    const double t = 1e-9 * static_cast<double>(sample.stamp_ns - kBegin);
+    if (t <= 5) before.add(sample);
+    if (t >= 6) after.add(sample);
+  }
+  InertialState silent = started(motion);
+  followOver(motion, 0, 5, &silent);
+  InertialState later = silent;
+  EXPECT_FALSE(silent.propagateTo(kBegin + 5500000000, before));
+  EXPECT_FALSE(later.propagateTo(kBegin + 5500000000, after));
+  EXPECT_TRUE(later.rotationSinceFrameCovariance().isApprox(silent.rotationSinceFrameCovariance(), 1e-3));
+  EXPECT_TRUE(later.displacementSinceFrameCovariance().isApprox(silent.displacementSinceFrameCovariance(), 1e-3));
+}
+
 TEST(InertialState, VisionWinsOverABrokenGyroscope) {
   // Cut at 0.3 rad/s for a second, as by a range that is too small.
   Trajectory motion;

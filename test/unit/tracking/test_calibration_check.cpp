@@ -91,7 +91,9 @@ TEST(CalibrationCheck, FindsTheTurnOfACamera) {
 TEST(CalibrationCheck, SmallTurnsAreMeasuredButNotNamed) {
   const CameraRig rig = pinholePair();
   const CalibrationCheck check = see(rig, {0.05 * kDegree, 0, 0});
-  EXPECT_NEAR(check.turn(0, 1)->angle / kDegree, 0.05, 0.01);
+  const auto turn = check.turn(0, 1);
+  ASSERT_TRUE(turn);
+  EXPECT_NEAR(turn->angle / kDegree, 0.05, 0.01);
   EXPECT_TRUE(check.faults().empty());
 }
 
