@@ -7,33 +7,25 @@
 #include <limits>
 #include <memory>
 
-#include "ego_motion_run.h"
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
-#include "simulator/simulator.h"
+#include "scaled_rig.h"
+#include "simulated_recording.h"
 
 namespace multicam_egomotion {
 namespace {
 
 constexpr int kFrames = 36;
 
-// A scenario with half the pixels along each side, which renders four times as fast.
+// At half the resolution, which renders four times as fast.
 Scenario halved(Scenario scenario) {
-  std::vector<RigCamera> cameras = scenario.rig.cameras();
-  for (RigCamera& camera : cameras) {
-    const CameraModel& full = camera.model;
-    camera.model = CameraModel(full.width() / 2, full.height() / 2, full.fx() / 2, full.fy() / 2, full.cx() / 2 - 0.25,
-                               full.cy() / 2 - 0.25, full.distortion(), full.coefficients());
-  }
-  scenario.rig = CameraRig(cameras);
+  scenario.rig = scaledRig(scenario.rig, 0.5);
   return scenario;
 }
 
 // Renders as far as asked for and keeps the images; `simulator` must outlive it.
-Recording recordingOf(const Simulator& simulator) {
-  Recording recording;
-  recording.frames = simulator.frames();
-  recording.imu = simulator.imuSamples();
+Recording keptRecordingOf(const Simulator& simulator) {
+  Recording recording = recordingOf(simulator);
   auto rendered = std::make_shared<std::vector<FrameSet>>();
   recording.images = [rendered, &simulator](int frame) {
     while (static_cast<int>(rendered->size()) <= frame) {
@@ -41,7 +33,6 @@ Recording recordingOf(const Simulator& simulator) {
     }
     return (*rendered)[frame].images;
   };
-  recording.stamp = [&simulator](int frame) { return simulator.frameStamp(frame); };
   return recording;
 }
 
@@ -52,7 +43,7 @@ class EgoMotionTest : public ::testing::Test {
     SimulationOptions options;
     options.duration_s = 0.05 * (kFrames - 1);
     simulator_ = new Simulator(halved(makeScenario("handheld_stereo", options)));
-    recording_ = new Recording(recordingOf(*simulator_));
+    recording_ = new Recording(keptRecordingOf(*simulator_));
   }
   static void TearDownTestSuite() {
     delete recording_;
@@ -341,7 +332,7 @@ TEST(EgoMotionFromRest, TakesTheScaleFromTheImu) {
   SimulationOptions options;
   options.duration_s = 2.4;
   const Simulator simulator(halved(makeScenario("car_surround", options)));
-  const Recording recording = recordingOf(simulator);
+  const Recording recording = keptRecordingOf(simulator);
   EgoMotion odometry(simulator.scenario().rig, simulator.scenario().imu, EgoMotionOptions());
   RecordingPlayer player(recording);
   int moving = 0;

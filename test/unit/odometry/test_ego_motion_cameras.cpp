@@ -11,9 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "ego_motion_run.h"
 #include "scaled_rig.h"
-#include "simulator/simulator.h"
+#include "simulated_recording.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -25,10 +24,8 @@ class SurroundDrive {
  public:
   SurroundDrive() : simulator_(scenario()) {
     for (int frame = 0; frame < simulator_.frames(); ++frame) images_.push_back(simulator_.renderFrame(frame).images);
-    recording_.imu = simulator_.imuSamples();
-    recording_.frames = simulator_.frames();
+    recording_ = recordingOf(simulator_);
     recording_.images = [this](int frame) { return images_[frame]; };
-    recording_.stamp = [this](int frame) { return simulator_.frameStamp(frame); };
   }
 
   /// Of all frames, without the images of camera `lost` (-1: none) from 1 s on.
@@ -113,11 +110,7 @@ TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
   Scenario scenario = makeScenario("handheld_stereo", options);
   scenario.rig = scaledRig(scenario.rig, 0.5);
   const Simulator simulator(scenario);
-  Recording recording;
-  recording.imu = simulator.imuSamples();
-  recording.frames = simulator.frames();
-  recording.images = [&](int frame) { return simulator.renderFrame(frame).images; };
-  recording.stamp = [&](int frame) { return simulator.frameStamp(frame); };
+  const Recording recording = recordingOf(simulator);
   const auto namesMounting = [](const EgoMotion& odometry) {
     const std::vector<std::string> faults = odometry.faults();
     return std::any_of(faults.begin(), faults.end(), [](const std::string& fault) {

@@ -6,11 +6,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "ego_motion_run.h"
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "scaled_rig.h"
-#include "simulator/simulator.h"
+#include "simulated_recording.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -27,15 +26,6 @@ Simulator inTheRoom(double duration_s, double image_rate_hz, const Trajectory& t
   scenario.rig = scaledRig(scenario.rig, 0.5);
   scenario.trajectory = trajectory;
   return Simulator(scenario);
-}
-
-Recording recordingOf(const Simulator& simulator) {
-  Recording recording;
-  recording.frames = simulator.frames();
-  recording.imu = simulator.imuSamples();
-  recording.images = [&simulator](int frame) { return simulator.renderFrame(frame).images; };
-  recording.stamp = [&simulator](int frame) { return simulator.frameStamp(frame); };
-  return recording;
 }
 
 struct PathErrors {

@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
-#include "ego_motion_run.h"
-#include "simulator/simulator.h"
+#include "scaled_rig.h"
+#include "simulated_recording.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -17,19 +17,9 @@ TEST(EgoMotionTuning, TakesEffectAtTheNextFrame) {
   SimulationOptions simulation;
   simulation.duration_s = 0.05 * (kFrames - 1);
   Scenario scenario = makeScenario("handheld_stereo", simulation);
-  std::vector<RigCamera> cameras = scenario.rig.cameras();
-  for (RigCamera& camera : cameras) {  // half the pixels along each side render four times as fast
-    const CameraModel& full = camera.model;
-    camera.model = CameraModel(full.width() / 2, full.height() / 2, full.fx() / 2, full.fy() / 2, full.cx() / 2 - 0.25,
-                               full.cy() / 2 - 0.25, full.distortion(), full.coefficients());
-  }
-  scenario.rig = CameraRig(cameras);
+  scenario.rig = scaledRig(scenario.rig, 0.5);  // which renders four times as fast
   const Simulator simulator(scenario);
-  Recording recording;
-  recording.frames = simulator.frames();
-  recording.imu = simulator.imuSamples();
-  recording.images = [&](int frame) { return simulator.renderFrame(frame).images; };
-  recording.stamp = [&](int frame) { return simulator.frameStamp(frame); };
+  const Recording recording = recordingOf(simulator);
 
   EgoMotionOptions options;
   EgoMotion odometry(simulator.scenario().rig, simulator.scenario().imu, options);

@@ -6,12 +6,11 @@
 #include <cstdio>
 #include <string>
 
-#include "ego_motion_run.h"
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/odometry/systematic_drift.h"
 #include "scaled_rig.h"
-#include "simulator/simulator.h"
+#include "simulated_recording.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -59,11 +58,7 @@ double accumulatedNees(const std::string& name, double seconds) {
   scenario.rig = scaledRig(scenario.rig, 0.5);  // which renders four times as fast
   const Simulator simulator(scenario);
   EgoMotion odometry(simulator.scenario().rig, simulator.scenario().imu, {});
-  Recording recording;
-  recording.frames = simulator.frames();
-  recording.imu = simulator.imuSamples();
-  recording.images = [&](int frame) { return simulator.renderFrame(frame).images; };
-  recording.stamp = [&](int frame) { return simulator.frameStamp(frame); };
+  const Recording recording = recordingOf(simulator);
   const std::vector<EgoMotionResult> results = RecordingPlayer(recording).play(&odometry, 0, recording.frames);
 
   double sum = 0.0;
