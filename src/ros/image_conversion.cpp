@@ -4,12 +4,23 @@
 
 #include <cv_bridge/cv_bridge.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
 #include "multicam_egomotion/tracking/grey_image.h"
 
 namespace multicam_egomotion {
+namespace {
+
+const std::vector<std::uint8_t> kJpegStart = {0xFF, 0xD8, 0xFF};
+const std::vector<std::uint8_t> kPngStart = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+
+bool startsWith(const std::vector<std::uint8_t>& data, const std::vector<std::uint8_t>& start) {
+  return data.size() >= start.size() && std::equal(start.begin(), start.end(), data.begin());
+}
+
+}  // namespace
 
 cv::Mat greyPixels(const sensor_msgs::Image& image) {
   int type = 0;
@@ -43,7 +54,10 @@ cv::Mat greyPixels(const sensor_msgs::Image& image) {
 cv::Mat greyPixels(const sensor_msgs::CompressedImage& image) {
   cv::Mat pixels;
   try {
-    if (!image.data.empty()) pixels = cv::imdecode(image.data, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+    // The decoders that OpenCV may have for other formats are not all made for data that nobody has checked: that of
+    // DICOM ends the process.
+    const bool known = startsWith(image.data, kJpegStart) || startsWith(image.data, kPngStart);
+    if (known) pixels = cv::imdecode(image.data, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
   } catch (const cv::Exception&) {  // answered below
   }
   if (pixels.empty()) {

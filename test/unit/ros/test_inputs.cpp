@@ -126,6 +126,18 @@ TEST(ImageConversion, CompressedImages) {
   EXPECT_EQ(cv::norm(greyPixels(image), pixels), 0.0);
   image.data.resize(10);
   EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  cv::imencode(".jpg", pixels, image.data);
+  EXPECT_LT(cv::norm(greyPixels(image), pixels, cv::NORM_INF), 20.0);
+}
+
+// OpenCV's decoder of DICOM, where it has one, ends the process on some of what begins like this.
+TEST(ImageConversion, OtherFormatsAreNotDecoded) {
+  sensor_msgs::CompressedImage image;
+  cv::imencode(".bmp", cv::Mat(8, 8, CV_8UC1, cv::Scalar(9)), image.data);
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
+  image.data.assign(128, 4);
+  for (const char byte : {'D', 'I', 'C', 'M', '/', '\'', '\1'}) image.data.push_back(static_cast<std::uint8_t>(byte));
+  EXPECT_THROW(greyPixels(image), std::invalid_argument);
 }
 
 }  // namespace
