@@ -172,7 +172,8 @@ bool InertialState::correct(const VectorRef& residual, const MatrixRef& H, const
     ++counts->invalid;
     return false;
   }
-  if (squaredMahalanobis(residual, innovation) > chiSquareGate(static_cast<int>(residual.size()))) {
+  counts->squared_mahalanobis = squaredMahalanobis(residual, innovation);
+  if (counts->squared_mahalanobis > chiSquareGate(static_cast<int>(residual.size()))) {
     ++counts->rejected;
     if (++counts->consecutive_rejections < options_.rejections_before_recovery) {
       return false;

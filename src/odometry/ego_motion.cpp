@@ -38,7 +38,7 @@ constexpr double kFewInliers = 0.5;            // share of the tracks below whic
 constexpr double kManyMore = 1.5;              // times the inliers without the gyroscope, if it is
 constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
 constexpr double kPoorScale = 0.05;            // sigma of the scale above which its error lasts
-constexpr double kRefusedShare = 0.4;          // of the displacements seen, if accelerometer and images disagree
+constexpr double kContradicted = 6.0;          // accelerometer and images disagree; 3 is what noise makes
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -123,9 +123,9 @@ class EgoMotion::Impl {
     if (gyroscope_check_.state() == GyroscopeCheck::State::kDisagrees) {
       all.push_back("gyroscope " + gyroscope_check_.report());
     }
-    if (inertial_ && inertial_->refusedShare() > kRefusedShare) {
+    if (inertial_ && inertial_->contradiction() > kContradicted) {
       all.push_back(
-          "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or baselines wrong?");
+          "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or poses of the cameras wrong?");
     }
     for (const std::string& fault : tracker_.calibrationCheck().faults()) all.push_back(fault);
     return all;

@@ -19,7 +19,8 @@ constexpr std::int64_t kLatestSamples = 1000000000;  // samples that come later 
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
 constexpr double kDisplacementModelShare = 0.005;  // of the distance
-constexpr double kRefusedMemory = 20.0;            // frames over which the share of the refused ones is taken
+constexpr double kContradictionMemory = 20.0;      // frames over which the mean is taken
+constexpr double kMostContradiction = 20.0;        // of one frame
 // The start is made again where its vertical proves to have been this far off, and is known so many times better by
 // then that what the force told of it hardly counts: what has been seen is used once.
 constexpr double kTiltedStart = 0.05;  // [rad]
@@ -166,8 +167,9 @@ void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Matrix3d displacement_covariance =
       propagated(to_imu, vision.covariance) +
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
-  const bool accepted = state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
-  refused_share_ += ((accepted ? 0.0 : 1.0) - refused_share_) / kRefusedMemory;
+  state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  const double distance = std::min(state_.velocityCounts().squared_mahalanobis, kMostContradiction);
+  contradiction_ += (distance - contradiction_) / kContradictionMemory;
 }
 
 // The filter is linear in small angles only: what a wrong vertical at the start makes of gravity stays in the biases.
@@ -227,7 +229,7 @@ void InertialMotion::replayStart(const Eigen::Vector3d& up, double lengthening) 
   };
   const std::int64_t now_ns = state_.stamp();
   const Frame newest = newest_;
-  const double refused_share = refused_share_;
+  const double contradiction = contradiction_;
   state_ = start_->before;
   state_.initialize(start_->samples, &up);
   start_->up = up;
@@ -242,7 +244,7 @@ void InertialMotion::replayStart(const Eigen::Vector3d& up, double lengthening) 
   propagateTo(now_ns);
   newest_ = newest;
   learnFrame(newest);
-  refused_share_ = refused_share;
+  contradiction_ = contradiction;
 }
 
 Eigen::Vector3d InertialMotion::up() const {

@@ -114,6 +114,7 @@ sensor_msgs::PointCloud2 toPointCloud(const EgoMotionResult& result, const Frame
   sensor_msgs::PointCloud2Modifier modifier(message);
   modifier.setPointCloud2FieldsByString(1, "xyz");
   modifier.resize(result.points.size());
+  if (result.points.empty()) return message;  // the iterators take the address of the first byte
   sensor_msgs::PointCloud2Iterator<float> x(message, "x"), y(message, "y"), z(message, "z");
   for (const Eigen::Vector3d& point : result.points) {
     *x = static_cast<float>(point.x());

@@ -74,8 +74,9 @@ class InertialMotion : public MotionModel {
   TwistWithCovariance twist() const override;
   Eigen::Vector3d gyroscopeBias() const override { return state_.gyroscopeBias(); }
   Eigen::Vector3d accelerometerBias() const override { return state_.accelerometerBias(); }
-  /// Share of the displacements seen lately that do not fit the accelerometer.
-  double refusedShare() const { return refused_share_; }
+  /// Between the displacements seen lately and those that the accelerometer expects: mean of their squared Mahalanobis
+  /// distance, of which single ones count so much at most; 3 where both are as good as they say.
+  double contradiction() const { return contradiction_; }
   void restartAt(std::int64_t stamp_ns, double attitude_sigma) override;
   void reset(bool forget_biases) override;
 
@@ -111,7 +112,7 @@ class InertialMotion : public MotionModel {
 
   ImuCalibration calibration_;
   InertialState state_;
-  double refused_share_ = 0.0;
+  double contradiction_ = 0.0;
   const ImuBuffer* buffer_;
   bool tilt_from_message_;
   bool initialized_ = false;

@@ -103,26 +103,36 @@ TEST(EgoMotionCameras, OneOfFourLostDriftsLittleMore) {
   }
 }
 
-// Cameras that are not mounted as the rig file says no longer find each other's features.
-TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
+Scenario handheld(double duration_s) {
   SimulationOptions options;
-  options.duration_s = 3.0;
+  options.duration_s = duration_s;
   Scenario scenario = makeScenario("handheld_stereo", options);
   scenario.rig = scaledRig(scenario.rig, 0.5);
+  return scenario;
+}
+
+/// The rig as a rig file might wrongly have it.
+CameraRig withSecondTurned(const CameraRig& rig, double turn_deg, const Eigen::Vector3d& axis) {
+  std::vector<RigCamera> cameras = rig.cameras();
+  cameras[1].T_body_cam.rotate(Eigen::AngleAxisd(turn_deg * M_PI / 180.0, axis));
+  return CameraRig(cameras);
+}
+
+bool names(const EgoMotion& odometry, const std::string& fault) {
+  const std::vector<std::string> faults = odometry.faults();
+  return std::any_of(faults.begin(), faults.end(),
+                     [&](const std::string& one) { return one.find(fault) != std::string::npos; });
+}
+
+// Cameras that are not mounted as the rig file says no longer find each other's features.
+TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
+  const Scenario scenario = handheld(3.0);
   const Simulator simulator(scenario);
   const Recording recording = recordingOf(simulator);
-  const auto namesMounting = [](const EgoMotion& odometry) {
-    const std::vector<std::string> faults = odometry.faults();
-    return std::any_of(faults.begin(), faults.end(), [](const std::string& fault) {
-      return fault.find("cam1 disagrees with cam0: turned by") != std::string::npos;
-    });
-  };
   for (const double turn_deg : {0.0, 1.0}) {
-    std::vector<RigCamera> cameras = scenario.rig.cameras();
-    cameras[1].T_body_cam.rotate(Eigen::AngleAxisd(turn_deg * M_PI / 180.0, Eigen::Vector3d::UnitX()));
-    EgoMotion odometry(CameraRig(cameras), scenario.imu, {});
+    EgoMotion odometry(withSecondTurned(scenario.rig, turn_deg, Eigen::Vector3d::UnitX()), scenario.imu, {});
     const auto results = RecordingPlayer(recording).play(&odometry, 0, recording.frames);
-    EXPECT_EQ(namesMounting(odometry), turn_deg > 0.0) << turn_deg;
+    EXPECT_EQ(names(odometry, "cam1 disagrees with cam0: turned by"), turn_deg > 0.0) << turn_deg;
     const auto published = std::count_if(results.begin(), results.end(), [](const auto& one) { return one.has_pose; });
     EXPECT_GE(published, recording.frames);
     double found = 0.0, truth = 0.0;
@@ -136,6 +146,18 @@ TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
     }
     std::printf("cam1 turned by %.1f deg: %.3f of %.3f m\n", turn_deg, found, truth);
     EXPECT_NEAR(found / truth, 1.0, turn_deg > 0.0 ? 0.3 : 0.02);
+  }
+}
+
+// Along the epipolar lines a turn is no contradiction between the cameras, but to the accelerometer.
+TEST(EgoMotionCameras, LengthsThatTheAccelerometerContradictsAreNamed) {
+  const Scenario scenario = handheld(3.0);
+  const Simulator simulator(scenario);
+  const Recording recording = recordingOf(simulator);
+  for (const double turn_deg : {0.0, 1.0, -1.0}) {
+    EgoMotion odometry(withSecondTurned(scenario.rig, turn_deg, Eigen::Vector3d::UnitY()), scenario.imu, {});
+    RecordingPlayer(recording).play(&odometry, 0, recording.frames);
+    EXPECT_EQ(names(odometry, "accelerometer disagrees with the images"), turn_deg != 0.0) << turn_deg;
   }
 }
 

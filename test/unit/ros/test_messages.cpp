@@ -99,6 +99,14 @@ TEST(Messages, PointCloud) {
   EXPECT_EQ(*reinterpret_cast<const float*>(&cloud.data[cloud.point_step + 8]), 6.0f);
 }
 
+TEST(Messages, PointCloudOfNoPoints) {
+  EgoMotionResult result = movedResult();
+  result.points.clear();
+  const sensor_msgs::PointCloud2 cloud = toPointCloud(result, {"odom", "base"});
+  EXPECT_EQ(cloud.width * cloud.height, 0u);
+  EXPECT_EQ(cloud.fields.size(), 3u);
+}
+
 TEST(Messages, ImuOrientationNeedsACovariance) {
   sensor_msgs::Imu imu;
   imu.orientation.w = 1.0;
