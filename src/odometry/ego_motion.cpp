@@ -125,7 +125,8 @@ class EgoMotion::Impl {
     }
     if (inertial_ && inertial_->contradiction() > kContradicted) {
       all.push_back(
-          "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or poses of the cameras wrong?");
+          "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or poses of the cameras "
+          "wrong?");
     }
     for (const std::string& fault : tracker_.calibrationCheck().faults()) all.push_back(fault);
     return all;
