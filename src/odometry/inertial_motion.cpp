@@ -19,7 +19,7 @@ constexpr std::int64_t kLatestSamples = 1000000000;  // samples that come later 
 constexpr double kRotationModelSigma = 3e-4;       // [rad]
 constexpr double kDisplacementModelSigma = 5e-4;   // [m]
 constexpr double kDisplacementModelShare = 0.005;  // of the distance
-constexpr double kContradictionMemory = 20.0;      // frames over which the mean is taken
+constexpr double kContradictionMemory = 60.0;      // frames over which the mean is taken: single bursts do not count
 constexpr double kMostContradiction = 20.0;        // of one frame
 // The start is made again where its vertical proves to have been this far off, and is known so many times better by
 // then that what the force told of it hardly counts: what has been seen is used once.

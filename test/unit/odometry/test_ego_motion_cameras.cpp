@@ -151,7 +151,7 @@ TEST(EgoMotionCameras, AWrongMountingIsNamedAndSurvived) {
 
 // Along the epipolar lines a turn is no contradiction between the cameras, but to the accelerometer.
 TEST(EgoMotionCameras, LengthsThatTheAccelerometerContradictsAreNamed) {
-  const Scenario scenario = handheld(3.0);
+  const Scenario scenario = handheld(5.0);
   const Simulator simulator(scenario);
   const Recording recording = recordingOf(simulator);
   for (const double turn_deg : {0.0, 1.0, -1.0}) {
