@@ -51,7 +51,7 @@ struct CorrectionCounts {
   std::uint64_t invalid = 0;     ///< not finite, or a covariance that is not positive definite
   std::uint64_t recoveries = 0;  ///< covariance widened after repeated rejection
   int consecutive_rejections = 0;
-  double squared_mahalanobis = 0.0;  ///< of the last valid one's residual, which the gate is for
+  double squared_mahalanobis = 0.0;  ///< of the residual of the last that was valid, whether accepted or not
 };
 
 /// Attitude, velocity and biases of the IMU: error-state Kalman filter with the attitude at the last frame and the
