@@ -74,8 +74,9 @@ class InertialMotion : public MotionModel {
   TwistWithCovariance twist() const override;
   Eigen::Vector3d gyroscopeBias() const override { return state_.gyroscopeBias(); }
   Eigen::Vector3d accelerometerBias() const override { return state_.accelerometerBias(); }
-  /// Between the displacements seen in the last 60 frames or so and those that the accelerometer expected: mean of their
-  /// squared Mahalanobis distances, each counted as 20 at most. 3 where both are as good as they say, less where better.
+  /// Between the displacements seen in the last 60 frames or so and those that the accelerometer expected: mean of
+  /// their squared Mahalanobis distances, each counted as 20 at most. 3 where both are as good as they say, less where
+  /// better.
   double contradiction() const { return contradiction_; }
   void restartAt(std::int64_t stamp_ns, double attitude_sigma) override;
   void reset(bool forget_biases) override;
