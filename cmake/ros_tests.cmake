@@ -25,11 +25,13 @@ target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_eg
 precompile_headers(ros_libraries test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
 set(fault_table_timeout 600)
-set(replay_rate)  # as the replay has it
+set(replay_rate)  # as each has it
+set(rostest_timeout 240)
 set(live_alone FALSE)
 if(MULTICAM_EGOMOTION_SANITIZE)
   set(fault_table_timeout 2400)
-  set(replay_rate rate:=0.15)
+  set(replay_rate rate:=0.1)
+  set(rostest_timeout 600)
   set(live_alone TRUE)
 endif()
 # Each in two parts that run at the same time.
@@ -61,8 +63,8 @@ function(add_ros_test name file)
   add_test(NAME rostest_${name} COMMAND ${run_rostest} ${name} ${CMAKE_CURRENT_SOURCE_DIR}/test/rostest/${file}
     ${CMAKE_BINARY_DIR}/test/rostest/${name} ${ARGN})
   # One at a time; they mostly wait, so they start first and run beside the others, if they are not slow themselves.
-  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT 240 SKIP_RETURN_CODE 77 RESOURCE_LOCK ros COST 100
-    RUN_SERIAL ${live_alone})
+  set_tests_properties(rostest_${name} PROPERTIES TIMEOUT ${rostest_timeout} SKIP_RETURN_CODE 77 RESOURCE_LOCK ros
+    COST 100 RUN_SERIAL ${live_alone})
 endfunction()
 
 # A simulated recording, made when the tests run.
@@ -73,8 +75,8 @@ add_ros_test(replay_simulated replay.test bag:=${simulated}.bag rig:=${simulated
   ${replay_rate})
 add_ros_test(topics_only topics_only.test bag:=${simulated}.bag)
 add_ros_test(bag_loop bag_loop.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml ${replay_rate})
-add_ros_test(nodelet_manager nodelet_manager.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
-add_ros_test(live_faults live_faults.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml)
+add_ros_test(nodelet_manager nodelet_manager.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml ${replay_rate})
+add_ros_test(live_faults live_faults.test bag:=${simulated}.bag rig:=${simulated}.rig.yaml ${replay_rate})
 set_tests_properties(rostest_live_faults PROPERTIES TIMEOUT 600)  # with as many signals as one likes
 add_test(NAME test_egomotion_bag COMMAND ${PYTHON_EXECUTABLE}
   ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_egomotion_bag.py $<TARGET_FILE:egomotion_bag> ${simulated})

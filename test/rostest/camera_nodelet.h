@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <string>
@@ -19,8 +20,8 @@
 
 namespace multicam_egomotion {
 
-/// Publishes images and IMU samples of a recording in real time, again and again with stamps that go on, as the drivers
-/// of a rig would; knows which thread was the last to hold each image.
+/// Publishes images and IMU samples of a recording, again and again with stamps that go on, as the drivers of a rig
+/// would; knows which thread was the last to hold each image.
 class CameraNodelet : public nodelet::Nodelet {
  public:
   /// Images by the name of the thread that let go of them last.
@@ -30,8 +31,8 @@ class CameraNodelet : public nodelet::Nodelet {
   }
   /// Images that someone still holds.
   static int held() { return held_; }
-  /// Before it is loaded: the first `seconds` of a bag.
-  static void setRecording(const std::string& bag_path, double seconds) {
+  /// Before it is loaded: the first `seconds` of a bag, and how fast to publish them (1 is real time).
+  static void setRecording(const std::string& bag_path, double seconds, double rate) {
     const rosbag::Bag bag(bag_path, rosbag::bagmode::Read);
     rosbag::View all(bag);
     const ros::Time end = all.getBeginTime() + ros::Duration(seconds);
@@ -41,6 +42,7 @@ class CameraNodelet : public nodelet::Nodelet {
           {message.getTopic(), message.instantiate<sensor_msgs::Image>(), message.instantiate<sensor_msgs::Imu>()});
     }
     length_ = ros::Duration(seconds + 0.05);
+    rate_ = rate;
   }
 
   ~CameraNodelet() override {
@@ -72,7 +74,7 @@ class CameraNodelet : public nodelet::Nodelet {
     for (ros::Duration offset; running_; offset += length_) {
       for (const Recorded& one : recording_) {
         const ros::Duration since = stampOf(one) + offset - first;
-        std::this_thread::sleep_until(begin + std::chrono::nanoseconds(since.toNSec()));
+        std::this_thread::sleep_until(begin + std::chrono::nanoseconds(std::llround(1e9 * since.toSec() / rate_)));
         if (!running_) return;
         publish(one, stampOf(one) + offset);
       }
@@ -106,6 +108,7 @@ class CameraNodelet : public nodelet::Nodelet {
   inline static const std::vector<std::string> kTopics = {"/cam0/image_raw", "/cam1/image_raw", "/imu"};
   inline static std::vector<Recorded> recording_;
   inline static ros::Duration length_;
+  inline static double rate_ = 1.0;
   inline static std::mutex mutex_;
   inline static std::map<std::string, int> released_;
   inline static std::atomic<int> held_{0};

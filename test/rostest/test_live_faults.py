@@ -27,7 +27,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu
 from tf2_msgs.msg import TFMessage
 
-BAG, RIG = sys.argv[1:3] if len(sys.argv) > 2 else ("", "")
+BAG, RIG, RATE = sys.argv[1:4] if len(sys.argv) > 3 else ("", "", "1")
 SIGNALS = int(os.environ.get("MULTICAM_EGOMOTION_SIGNALS", "5"))
 
 
@@ -166,7 +166,7 @@ class LiveFaults(unittest.TestCase):
             rospy.Subscriber(f"{space}/ego_motion", EgoMotion,
                              lambda m: m.status != EgoMotion.COASTING and worked.append(m.header.stamp.to_sec()),
                              queue_size=1000)]
-        player = play("--rate", "4", "--wait-for-subscribers")
+        player = play("--rate", str(4 * float(RATE)), "--wait-for-subscribers")
         self.assertEqual(player.wait(60), 0)
         time.sleep(2.0)
         for connection in deaf:

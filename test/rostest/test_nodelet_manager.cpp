@@ -67,7 +67,9 @@ class NodeletManager : public ::testing::Test {
     std::string bag;
     ASSERT_TRUE(ros::param::get("~bag", bag));
     ASSERT_TRUE(ros::param::get("~rig", rig_));
-    CameraNodelet::setRecording(bag, 4.0);
+    double rate = 0.0;
+    ASSERT_TRUE(ros::param::get("~rate", rate));
+    CameraNodelet::setRecording(bag, 4.0, rate);
   }
 
   NodeletManager()
