@@ -21,6 +21,11 @@ function(add_test_executable name)
   add_dependencies(tests ${name})
 endfunction()
 
+set(unit_test_timeout 600)
+if(MULTICAM_EGOMOTION_SANITIZE)
+  set(unit_test_timeout 2400)
+endif()
+
 # One ctest entry a test: a skipped one is named, and hides no failure of its neighbours. A suite that shares a costly
 # set-up has an executable of its own, and is one entry.
 function(add_unit_tests layer)
@@ -32,12 +37,12 @@ function(add_unit_tests layer)
       get_filename_component(name ${source} NAME_WE)
       add_test_executable(${name} SOURCES ${source} LIBRARIES ${ARGN})
       add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-      set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+      set_tests_properties(${name} PROPERTIES TIMEOUT ${unit_test_timeout})
     endif()
   endforeach()
   add_test_executable(test_${layer} SOURCES ${sources} LIBRARIES ${ARGN})
   gtest_discover_tests(test_${layer} TEST_PREFIX test_${layer}. WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
-    DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "  SKIPPED ")
+    DISCOVERY_TIMEOUT 120 PROPERTIES TIMEOUT ${unit_test_timeout} SKIP_REGULAR_EXPRESSION "  SKIPPED ")
 endfunction()
 
 function(add_style_check name)

@@ -15,7 +15,7 @@ if [[ ${1:-} == --all ]]; then
   flags="-O1 -g1"
   stack_use_after_return=1
   targets=(all tests)
-  filter=(-E '^(style_|test_scripts)')
+  filter=(-E '^(style_|test_scripts|consumer_)')  # consumers are not built with the sanitizers
 else
   sanitizers="address;bool;bounds;enum;float-cast-overflow;integer-divide-by-zero;return;shift;signed-integer-overflow;unreachable"
   flags="-O2 -g0"
