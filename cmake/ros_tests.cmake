@@ -24,12 +24,10 @@ target_link_libraries(test_fault_table multicam_egomotion_bag_runner multicam_eg
   multicam_egomotion_simulator GTest::GTest GTest::Main)
 precompile_headers(ros_libraries test_fault_table)
 set_target_properties(test_fault_table PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/test)
-set(fault_table_timeout 600)
-set(replay_rate)  # as each has it
+set(replay_rate)  # each has its own default
 set(rostest_timeout 240)
 set(live_alone FALSE)
 if(MULTICAM_EGOMOTION_SANITIZE)
-  set(fault_table_timeout 2400)
   set(replay_rate rate:=0.1)
   set(rostest_timeout 600)
   set(live_alone TRUE)
@@ -40,7 +38,7 @@ foreach(recording simulated recorded)
     set(name test_fault_table_${recording}_${part})
     add_test(NAME ${name} COMMAND test_fault_table --gtest_filter=${recording}/*
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    set_tests_properties(${name} PROPERTIES TIMEOUT ${fault_table_timeout} COST 50
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${unit_test_timeout} COST 50
       ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${part}" SKIP_REGULAR_EXPRESSION "  SKIPPED ")
   endforeach()
 endforeach()

@@ -21,11 +21,6 @@ function(add_test_executable name)
   add_dependencies(tests ${name})
 endfunction()
 
-set(unit_test_timeout 600)
-if(MULTICAM_EGOMOTION_SANITIZE)
-  set(unit_test_timeout 2400)
-endif()
-
 # One ctest entry a test: a skipped one is named, and hides no failure of its neighbours. A suite that shares a costly
 # set-up has an executable of its own, and is one entry.
 function(add_unit_tests layer)

@@ -11,7 +11,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <mutex>
 #include <string>
@@ -74,7 +73,7 @@ class CameraNodelet : public nodelet::Nodelet {
     for (ros::Duration offset; running_; offset += length_) {
       for (const Recorded& one : recording_) {
         const ros::Duration since = stampOf(one) + offset - first;
-        std::this_thread::sleep_until(begin + std::chrono::nanoseconds(std::llround(1e9 * since.toSec() / rate_)));
+        std::this_thread::sleep_until(begin + std::chrono::nanoseconds((since * (1.0 / rate_)).toNSec()));
         if (!running_) return;
         publish(one, stampOf(one) + offset);
       }

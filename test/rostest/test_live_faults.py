@@ -181,7 +181,8 @@ class LiveFaults(unittest.TestCase):
         self.assertGreater(len(worked), 2)
         self.assertGreaterEqual(len(poses), len(worked))
         self.assertGreater(max(worked), max(images) - 0.2, "the newest images were not worked")
-        self.assertLess(node.worst_latency_ms, 3000.0 / RATE)
+        # Images that are not dropped would wait for as long as they are played, 1 s / RATE, and 2 s.
+        self.assertLess(node.worst_latency_ms, 2500.0 + 500.0 / RATE)
         self.assertEqual(int(node.values["internal errors"]), 0)
 
     def test_signals_at_random_times(self):
