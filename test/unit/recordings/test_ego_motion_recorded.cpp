@@ -78,7 +78,8 @@ TEST(EgoMotionRecorded, EurocMh01) {
 
 TEST(EgoMotionRecorded, Kitti03WithoutImu) {
   const fs::path folder = dataFolder() / "kitti_odometry_excerpt" / "sequences" / "03";
-  if (!fs::exists(folder / "calib.txt")) GTEST_SKIP() << "kitti_odometry_excerpt is not there";
+  const fs::path poses = dataFolder() / "kitti_odometry_excerpt" / "poses" / "03.txt";
+  if (!fs::exists(folder / "calib.txt") || !fs::exists(poses)) GTEST_SKIP() << "KITTI 03 is not there";
   const std::vector<std::vector<double>> calibration = numbersIn(folder / "calib.txt");
   Eigen::Matrix3d R_body_cam;  // x forward, z up
   R_body_cam << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -97,7 +98,7 @@ TEST(EgoMotionRecorded, Kitti03WithoutImu) {
   }
   Recording recording;
   const std::vector<std::vector<double>> times = numbersIn(folder / "times.txt");
-  const std::vector<std::vector<double>> rows = numbersIn(dataFolder() / "kitti_odometry_excerpt" / "poses" / "03.txt");
+  const std::vector<std::vector<double>> rows = numbersIn(poses);
   recording.frames = static_cast<int>(std::min(times.size(), rows.size()));
   recording.stamp = [&](int frame) { return 1000000000 + std::llround(1e9 * times[frame][0]); };
   recording.images = [&](int frame) {
