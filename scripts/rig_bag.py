@@ -46,6 +46,7 @@ class Camera:
     stamps_ns: np.ndarray              # (n,) of the images
     image_paths: List[pathlib.Path]    # (n,)
     projection: Optional[np.ndarray] = None  # (3, 4) P of rectified images
+    position_sigma_m: Optional[float] = None  # where the calibration is better than rig files are taken to be
 
 
 @dataclasses.dataclass
@@ -115,6 +116,8 @@ def rig_yaml(cameras, imu=None):
                   f"    distortion: {_numbers(camera.distortion)}",
                   *_matrix_lines("T_body_cam", camera.T_body_cam),
                   "    time_offset_s: 0.0  # t_imu = t_camera + time_offset_s"]
+        if camera.position_sigma_m is not None:
+            lines += ["    sigmas:", f"      position_m: {camera.position_sigma_m}"]
     if imu is not None:
         lines += ["imu:",
                   f"  frame_id: {imu.frame_id}",

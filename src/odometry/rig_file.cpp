@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/rig_file.h"
 
+#include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
@@ -47,9 +50,36 @@ Distortion readDistortion(const YamlReader& camera) {
   return distortion;
 }
 
+// What is less certain than that is no calibration.
+constexpr double kLargestAngleDeg = 30.0, kLargestPositionM = 10.0, kLargestFocalLengthPercent = 50.0;
+constexpr double kLargestPixels = 500.0, kLargestTimeOffsetS = 1.0;
+
+double readDegrees(const YamlReader& node, const char* key, double fallback) {
+  return node.has(key) ? node.numberUpTo(kLargestAngleDeg, key, 0.0) * M_PI / 180.0 : fallback;
+}
+
+double readPercent(const YamlReader& node, const char* key, double fallback) {
+  return node.has(key) ? node.numberUpTo(kLargestFocalLengthPercent, key, 0.0) / 100.0 : fallback;
+}
+
+CameraSigmas readSigmas(const YamlReader& camera) {
+  CameraSigmas sigmas;
+  if (!camera.has("sigmas")) return sigmas;
+  const YamlReader node = camera.at("sigmas");
+  node.allowOnly(
+      {"rotation_deg", "position_m", "focal_length_percent", "principal_point_px", "distortion_px", "time_offset_s"});
+  sigmas.rotation = readDegrees(node, "rotation_deg", sigmas.rotation);
+  sigmas.position = node.numberUpTo(kLargestPositionM, "position_m", sigmas.position);
+  sigmas.focal_length = readPercent(node, "focal_length_percent", sigmas.focal_length);
+  sigmas.principal_point_px = node.numberUpTo(kLargestPixels, "principal_point_px", sigmas.principal_point_px);
+  sigmas.distortion_px = node.numberUpTo(kLargestPixels, "distortion_px", sigmas.distortion_px);
+  sigmas.time_offset_s = node.numberUpTo(kLargestTimeOffsetS, "time_offset_s", sigmas.time_offset_s);
+  return sigmas;
+}
+
 RigCamera readCamera(const YamlReader& node) {
   node.allowOnly({"name", "frame_id", "image_topic", "camera_info_topic", "model", "resolution", "intrinsics",
-                  "distortion_model", "distortion", "T_body_cam", "time_offset_s"});
+                  "distortion_model", "distortion", "T_body_cam", "time_offset_s", "sigmas"});
   const std::string name = node.at("name").text();
   const std::vector<int> resolution = node.at("resolution").integers(2);
   const std::vector<double> k = node.at("intrinsics").numbers(4);
@@ -59,9 +89,12 @@ RigCamera readCamera(const YamlReader& node) {
                                                : std::vector<double>();
   const Eigen::Isometry3d T_body_cam = node.at("T_body_cam").transform();
   try {
-    return {name, node.text("frame_id", name),
-            CameraModel(resolution[0], resolution[1], k[0], k[1], k[2], k[3], distortion, coefficients), T_body_cam,
-            node.number("time_offset_s", 0.0)};
+    return {name,
+            node.text("frame_id", name),
+            CameraModel(resolution[0], resolution[1], k[0], k[1], k[2], k[3], distortion, coefficients),
+            T_body_cam,
+            node.number("time_offset_s", 0.0),
+            readSigmas(node)};
   } catch (const std::invalid_argument& error) {
     node.fail(error);
   }
@@ -69,7 +102,7 @@ RigCamera readCamera(const YamlReader& node) {
 
 ImuCalibration readImu(const YamlReader& node) {
   node.allowOnly({"frame_id", "topic", "T_body_imu", "rate_hz", "gyroscope_noise_density", "gyroscope_random_walk",
-                  "accelerometer_noise_density", "accelerometer_random_walk"});
+                  "accelerometer_noise_density", "accelerometer_random_walk", "mounting_sigma_deg"});
   ImuCalibration imu;
   imu.frame_id = node.text("frame_id", imu.frame_id);
   imu.topic = node.text("topic", imu.topic);
@@ -79,6 +112,7 @@ ImuCalibration readImu(const YamlReader& node) {
   imu.gyroscope_random_walk = node.positiveNumber("gyroscope_random_walk", imu.gyroscope_random_walk);
   imu.accelerometer_noise_density = node.positiveNumber("accelerometer_noise_density", imu.accelerometer_noise_density);
   imu.accelerometer_random_walk = node.positiveNumber("accelerometer_random_walk", imu.accelerometer_random_walk);
+  imu.mounting_sigma = readDegrees(node, "mounting_sigma_deg", imu.mounting_sigma);
   return imu;
 }
 
@@ -114,6 +148,15 @@ std::string shortest(double value) {
   return text;
 }
 
+// Without the last digit, which converting the unit has made up.
+std::string converted(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.15g", value);
+  return text;
+}
+
+std::string degrees(double radians) { return converted(radians * 180.0 / M_PI); }
+
 std::string quoted(const std::string& text) {
   YAML::Emitter emitter;
   emitter << text;
@@ -131,6 +174,15 @@ void writeTransform(std::ostream& out, const char* key, const Eigen::Isometry3d&
   for (int row = 0; row < 4; ++row) {
     out << indent << "  - " << listOf({T(row, 0), T(row, 1), T(row, 2), T(row, 3)}) << "\n";
   }
+}
+
+void writeSigmas(std::ostream& out, const CameraSigmas& sigmas) {
+  out << "    sigmas:  # standard deviations of this calibration"
+      << "\n      rotation_deg: " << degrees(sigmas.rotation) << "\n      position_m: " << shortest(sigmas.position)
+      << "\n      focal_length_percent: " << converted(100.0 * sigmas.focal_length)
+      << "\n      principal_point_px: " << shortest(sigmas.principal_point_px)
+      << "\n      distortion_px: " << shortest(sigmas.distortion_px) << "  # at the image's corner"
+      << "\n      time_offset_s: " << shortest(sigmas.time_offset_s) << "\n";
 }
 
 }  // namespace
@@ -166,6 +218,7 @@ void writeRigFile(const std::string& path, const RigFile& file) {
         << "\n";
     writeTransform(out, "T_body_cam", camera.T_body_cam, "    ");
     out << "    time_offset_s: " << shortest(camera.time_offset_s) << "  # t_imu = t_camera + time_offset_s\n";
+    writeSigmas(out, camera.sigmas);
   }
   if (file.has_imu) {
     const ImuCalibration& imu = file.imu;
@@ -175,10 +228,11 @@ void writeRigFile(const std::string& path, const RigFile& file) {
         << "\n  gyroscope_noise_density: " << shortest(imu.gyroscope_noise_density) << "  # [rad/s/sqrt(Hz)]"
         << "\n  gyroscope_random_walk: " << shortest(imu.gyroscope_random_walk) << "  # [rad/s^2/sqrt(Hz)]"
         << "\n  accelerometer_noise_density: " << shortest(imu.accelerometer_noise_density) << "  # [m/s^2/sqrt(Hz)]"
-        << "\n  accelerometer_random_walk: " << shortest(imu.accelerometer_random_walk) << "  # [m/s^3/sqrt(Hz)]\n";
+        << "\n  accelerometer_random_walk: " << shortest(imu.accelerometer_random_walk) << "  # [m/s^3/sqrt(Hz)]"
+        << "\n  mounting_sigma_deg: " << degrees(imu.mounting_sigma) << "  # of the rotation of T_body_imu, per axis\n";
   }
   out.flush();
-  if (!out) throw std::runtime_error(path + ": cannot be written");
+  if (!out) throw std::runtime_error("'" + path + "' cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace multicam_egomotion

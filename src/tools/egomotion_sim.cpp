@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 multicam_egomotion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Writes a bag with images, IMU and exact ground truth of a simulated scenario, its rig and its trajectory.
+// Writes a bag with images, IMU and exact ground truth of a simulated scenario, its rig and its trajectory. The rig
+// file can be wrong on purpose, as after a calibration.
 
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
@@ -22,6 +23,7 @@
 #include <string>
 
 #include "multicam_egomotion/odometry/rig_file.h"
+#include "simulator/miscalibration.h"
 #include "simulator/simulator.h"
 
 namespace {
@@ -164,8 +166,9 @@ void writeTum(const std::string& path, const Simulator& simulator) {
   if (std::fclose(file) != 0) throw std::runtime_error("cannot write " + path);
 }
 
-void writeRig(const std::string& path, const Scenario& scenario) {
-  RigFile file{scenario.rig, {}, {}, "base_link", true, scenario.imu};
+void writeRig(const std::string& path, const Scenario& scenario, double calibration_error, std::uint64_t seed) {
+  const CalibratedRig calibrated = miscalibrated(scenario.rig, scenario.imu, calibration_error, seed);
+  RigFile file{calibrated.rig, {}, {}, "base_link", true, calibrated.imu};
   for (const RigCamera& camera : scenario.rig.cameras()) {
     file.image_topics.push_back("/" + camera.name + "/image_raw");
     file.camera_info_topics.push_back("/" + camera.name + "/camera_info");
@@ -208,10 +211,14 @@ void writeBag(const std::string& path, const Simulator& simulator, int threads, 
   bag.close();
 }
 
+bool endsIn(const std::string& path, const std::string& extension) {
+  return path.size() > extension.size() && path.substr(path.size() - extension.size()) == extension;
+}
+
 std::string withoutExtension(const std::string& path) {
   const std::string extension = ".bag";
-  if (path.size() <= extension.size() || path.substr(path.size() - extension.size()) != extension) {
-    throw std::runtime_error("output is \"" + path + "\", expected a name that ends in .bag");
+  if (!endsIn(path, extension)) {
+    throw std::runtime_error("output is \"" + path + "\", expected a name that ends in .bag or .rig.yaml");
   }
   return path.substr(0, path.size() - extension.size());
 }
@@ -229,6 +236,8 @@ int main(int argc, char** argv) {
   SimulationOptions options;
   std::string scenario_name, output;
   int threads = 0;
+  double calibration_error = 0.0;
+  std::uint64_t calibration_seed = 1;
   po::options_description visible("Options");
   visible.add_options()("help,h", "this text")("seed", po::value(&options.seed)->default_value(options.seed),
                                                "of scene, noise and biases")(
@@ -242,7 +251,10 @@ int main(int argc, char** argv) {
                                           "of noise and biases, 0: exact")(
       "time-offset", po::value(&options.time_offset_s)->default_value(options.time_offset_s),
       "t_imu = t_image + offset [s]")("threads", po::value(&threads)->default_value(0), "0: one a processor core")(
-      "no-images", "IMU and ground truth alone");
+      "no-images", "IMU and ground truth alone")(
+      "calibration-error", po::value(&calibration_error)->default_value(calibration_error),
+      "of the rig file, as a factor of the sigmas in it; the bag is that of the true rig")(
+      "calibration-seed", po::value(&calibration_seed)->default_value(calibration_seed), "of the calibration error");
   po::options_description all;
   all.add(visible).add_options()("scenario", po::value(&scenario_name))("output", po::value(&output));
   po::positional_options_description positions;
@@ -253,15 +265,22 @@ int main(int argc, char** argv) {
     po::store(po::command_line_parser(argc, argv).options(all).positional(positions).run(), values);
     po::notify(values);
     if (values.count("help") != 0) {
-      std::cout << "egomotion_sim SCENARIO OUT.bag [options]\n\nScenarios\n" << scenarioList() << "\n" << visible;
+      std::cout << "egomotion_sim SCENARIO OUT.bag [options]\n"
+                << "egomotion_sim SCENARIO OUT.rig.yaml [options]: the rig file alone\n\nScenarios\n"
+                << scenarioList() << "\n"
+                << visible;
       return 0;
     }
     if (scenario_name.empty() || output.empty()) {
       throw std::runtime_error("expected SCENARIO OUT.bag; scenarios:\n" + scenarioList());
     }
+    if (endsIn(output, ".rig.yaml")) {
+      writeRig(output, makeScenario(scenario_name, options), calibration_error, calibration_seed);
+      return 0;
+    }
     const std::string stem = withoutExtension(output);
     const Simulator simulator(makeScenario(scenario_name, options));
-    writeRig(stem + ".rig.yaml", simulator.scenario());
+    writeRig(stem + ".rig.yaml", simulator.scenario(), calibration_error, calibration_seed);
     writeTum(stem + ".groundtruth.tum", simulator);
     writeBag(output, simulator, threads, values.count("no-images") == 0);
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,23 @@
 
 namespace multicam_egomotion {
 
+/// How far a calibration may be off: standard deviations. Defaults as people calibrate; 0 is known exactly.
+struct CameraSigmas {
+  double rotation = 0.1 * M_PI / 180.0;  ///< of T_body_cam, per axis [rad]
+  double position = 0.002;               ///< of T_body_cam, per axis [m]
+  double focal_length = 0.002;           ///< share of it
+  double principal_point_px = 0.5;       ///< per axis [px]
+  double distortion_px = 0.3;            ///< displacement of a pixel at the image's corner [px]
+  double time_offset_s = 0.002;          ///< [s]
+};
+
 struct RigCamera {
   std::string name;
   std::string frame_id;  ///< optical frame
   CameraModel model;
   Eigen::Isometry3d T_body_cam;  ///< camera pose in the body frame [m]
   double time_offset_s = 0.0;    ///< t_imu = t_image + time_offset_s
+  CameraSigmas sigmas = {};
 };
 
 /// One to eight calibrated cameras rigidly mounted on the body. Immutable once built (contract 11).

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <string>
 
 namespace multicam_egomotion {
@@ -18,6 +19,7 @@ struct ImuCalibration {
   double gyroscope_random_walk = 5e-5;                           ///< bias [rad/s^2/sqrt(Hz)]
   double accelerometer_noise_density = 5e-3;                     ///< [m/s^2/sqrt(Hz)]
   double accelerometer_random_walk = 1e-3;                       ///< bias [m/s^3/sqrt(Hz)]
+  double mounting_sigma = 0.2 * M_PI / 180.0;  ///< standard deviation of the rotation of T_body_imu, per axis [rad]
 };
 
 }  // namespace multicam_egomotion

@@ -32,6 +32,13 @@ cameras:
       - [0, -1, 0, 1.2]
       - [0, 0, 0, 1]
     time_offset_s: 0.004
+    sigmas:
+      rotation_deg: 0.07
+      position_m: 0.0005
+      focal_length_percent: 0.3
+      principal_point_px: 0.9
+      distortion_px: 0
+      time_offset_s: 1e-4
   - name: down
     model: equidistant
     resolution: [512, 512]
@@ -47,6 +54,7 @@ imu:
   gyroscope_random_walk: 1.9e-5
   accelerometer_noise_density: 2.0e-3
   accelerometer_random_walk: 3.0e-3
+  mounting_sigma_deg: 0.4
 )";
 
 // As kalibr_calibrate_imu_camera writes it.
@@ -130,6 +138,15 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(position, from.size(), to);
 }
 
+void expectEqual(const CameraSigmas& a, const CameraSigmas& b) {
+  EXPECT_DOUBLE_EQ(a.rotation, b.rotation);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_DOUBLE_EQ(a.focal_length, b.focal_length);
+  EXPECT_EQ(a.principal_point_px, b.principal_point_px);
+  EXPECT_EQ(a.distortion_px, b.distortion_px);
+  EXPECT_EQ(a.time_offset_s, b.time_offset_s);
+}
+
 TEST_F(RigFileTest, LoadsOurOwnFormat) {
   const RigFile file = loadRigFile(write("rig.yaml", kOwn));
   ASSERT_EQ(file.rig.size(), 2);
@@ -167,6 +184,49 @@ TEST_F(RigFileTest, LoadsOurOwnFormat) {
   EXPECT_LT((file.imu.T_body_imu.translation() - Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-15);
 }
 
+TEST_F(RigFileTest, LoadsHowWellTheRigIsKnown) {
+  const RigFile file = loadRigFile(write("rig.yaml", kOwn));
+  const CameraSigmas& front = file.rig.camera(0).sigmas;
+  EXPECT_DOUBLE_EQ(front.rotation, 0.07 * M_PI / 180.0);
+  EXPECT_EQ(front.position, 0.0005);
+  EXPECT_DOUBLE_EQ(front.focal_length, 0.003);
+  EXPECT_EQ(front.principal_point_px, 0.9);
+  EXPECT_EQ(front.distortion_px, 0.0);
+  EXPECT_EQ(front.time_offset_s, 1e-4);
+  expectEqual(file.rig.camera(1).sigmas, CameraSigmas());
+  EXPECT_DOUBLE_EQ(file.imu.mounting_sigma, 0.4 * M_PI / 180.0);
+}
+
+TEST_F(RigFileTest, SigmasThatAreNotGivenAreTheDefaults) {
+  std::string text = replaced(kOwn, "      position_m: 0.0005\n", "");
+  text = replaced(text, "      distortion_px: 0\n", "");
+  text = replaced(text, "  mounting_sigma_deg: 0.4\n", "");
+  const RigFile file = loadRigFile(write("rig.yaml", text));
+  EXPECT_EQ(file.rig.camera(0).sigmas.position, CameraSigmas().position);
+  EXPECT_EQ(file.rig.camera(0).sigmas.distortion_px, CameraSigmas().distortion_px);
+  EXPECT_EQ(file.rig.camera(0).sigmas.principal_point_px, 0.9);
+  EXPECT_EQ(file.imu.mounting_sigma, ImuCalibration().mounting_sigma);
+}
+
+TEST_F(RigFileTest, SigmasThatCannotBeAreRefused) {
+  const std::vector<std::pair<std::string, std::string>> sigmas = {
+      {"rotation_deg: 0.07", "0 to 30"},        {"position_m: 0.0005", "0 to 10"},
+      {"focal_length_percent: 0.3", "0 to 50"}, {"principal_point_px: 0.9", "0 to 500"},
+      {"distortion_px: 0", "0 to 500"},         {"time_offset_s: 1e-4", "0 to 1"}};
+  for (const auto& [line, range] : sigmas) {
+    const std::string key = line.substr(0, line.find(':')), place = "cameras[0].sigmas." + key;
+    expectRefusal(replaced(kOwn, line, key + ": -1e-6"), {place, "'-1e-6'", "a number from " + range});
+    expectRefusal(replaced(kOwn, line, key + ": 501"), {place, "'501'", "a number from " + range});
+    expectRefusal(replaced(kOwn, line, key + ": .nan"), {place, "'.nan'", "a finite number"});
+    expectRefusal(replaced(kOwn, line, key + ": little"), {place, "'little'", "a finite number"});
+  }
+  expectRefusal(replaced(kOwn, "rotation_deg", "rotation"), {"cameras[0].sigmas", "'rotation'", "rotation_deg"});
+  expectRefusal(replaced(kOwn, "mounting_sigma_deg: 0.4", "mounting_sigma_deg: -0.4"),
+                {"imu.mounting_sigma_deg", "'-0.4'", "a number from 0 to 30"});
+  expectRefusal(replaced(kOwn, "mounting_sigma_deg: 0.4", "mounting_sigma_deg: 31"),
+                {"imu.mounting_sigma_deg", "'31'", "a number from 0 to 30"});
+}
+
 TEST_F(RigFileTest, TheImuIsOptional) {
   const std::string text(kOwn);
   EXPECT_FALSE(loadRigFile(write("rig.yaml", text.substr(0, text.find("imu:\n")))).has_imu);
@@ -192,6 +252,7 @@ TEST_F(RigFileTest, WrittenFilesReadBackTheSame) {
     EXPECT_EQ(a.model.coefficients(), b.model.coefficients());
     EXPECT_EQ(a.time_offset_s, b.time_offset_s);
     EXPECT_LT((a.T_body_cam.matrix() - b.T_body_cam.matrix()).norm(), 1e-14);
+    expectEqual(a.sigmas, b.sigmas);
   }
   EXPECT_EQ(first.image_topics, second.image_topics);
   EXPECT_EQ(first.camera_info_topics, second.camera_info_topics);
@@ -204,6 +265,7 @@ TEST_F(RigFileTest, WrittenFilesReadBackTheSame) {
   EXPECT_EQ(first.imu.gyroscope_random_walk, second.imu.gyroscope_random_walk);
   EXPECT_EQ(first.imu.accelerometer_noise_density, second.imu.accelerometer_noise_density);
   EXPECT_EQ(first.imu.accelerometer_random_walk, second.imu.accelerometer_random_walk);
+  EXPECT_DOUBLE_EQ(first.imu.mounting_sigma, second.imu.mounting_sigma);
   EXPECT_LT((first.imu.T_body_imu.matrix() - second.imu.T_body_imu.matrix()).norm(), 1e-14);
 }
 
@@ -245,6 +307,7 @@ TEST_F(RigFileTest, LoadsKalibrAsItIs) {
   EXPECT_EQ(cam0.name, "cam0");
   EXPECT_EQ(cam0.time_offset_s, -0.0021);
   EXPECT_EQ(cam1.time_offset_s, -0.0022);
+  expectEqual(cam1.sigmas, CameraSigmas());
   EXPECT_EQ(cam0.model.distortion(), Distortion::kRadtan);
   EXPECT_EQ(cam1.model.distortion(), Distortion::kEquidistant);
   EXPECT_EQ(file.image_topics, (std::vector<std::string>{"/cam0/image_raw", "/cam1/image_raw"}));
