@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
@@ -15,6 +16,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 // Points stay in front: beyond infinity a reversed translation would explain the images as well [1/m].
 constexpr double kSmallestInverseDistance = 1e-4;
+constexpr int kMostUnknowns = 3 + 2 * (CameraRig::kMaxCameras - 1);  // of a landmark, offsets included
 
 // Two unit vectors that complete `direction` to an orthogonal frame.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& direction) {
@@ -35,6 +37,45 @@ double robustCost(double square, double width) {
 }
 double robustWeight(double square, double width) { return 1.0 / (1.0 + square / (width * width)); }
 
+// Where focal length and static errors of the camera move the image [px], and by what each of them moves it.
+using ImageErrors = Eigen::Matrix<double, 2, 1 + kFieldTerms>;
+ImageErrors imageErrors(const BundleObservation& view) {
+  ImageErrors errors;
+  errors << view.from_center, view.across * fieldTerms(view.image_position.x(), view.image_position.y()).transpose();
+  return errors;
+}
+// The rows of a pose or a camera against the `Depth` unknowns of a landmark.
+template <int kRows, int Depth>
+using RowsMatrix = Eigen::Matrix<double, kRows, Depth, kRows == 1 ? Eigen::RowMajor : Eigen::ColMajor, kRows,
+                                 Depth == Eigen::Dynamic ? kMostUnknowns : Depth>;
+template <int kRows, int Depth>
+using Rows = Eigen::Map<RowsMatrix<kRows, Depth>>;
+
+// Calls `work` with the number of rows as a constant, so that products have fixed sizes: of a pose, or of a camera.
+template <typename Work>
+void withRows(int rows, const Work& work) {
+  switch (rows) {
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    case 1:
+      return work(std::integral_constant<int, 1>());
+    case CameraCorrection::kRotation + 1:
+      return work(std::integral_constant<int, CameraCorrection::kRotation + 1>());
+    default:
+      return work(std::integral_constant<int, CameraCorrection::kAll>());
+  }
+}
+
+Eigen::Vector2d imageError(const BundleObservation& view, const CameraCorrection& correction) {
+  const double across = fieldTerms(view.image_position.x(), view.image_position.y()).dot(correction.field);
+  return correction.focal_length * view.from_center + across * view.across;
+}
+
+// The point of a landmark seen from the body: direction and distance of one length, whatever the distance.
+Eigen::Vector3d fromBody(const BundlePose& pose, const BundleLandmark& landmark) {
+  return pose.R.transpose() * (landmark.direction + landmark.inverse_distance * (landmark.origin - pose.p));
+}
+
 }  // namespace
 
 Vector6d localDifference(const BundlePose& a, const BundlePose& b) {
@@ -51,23 +92,71 @@ BundlePose retract(const BundlePose& a, const Vector6d& d) {
   return result;
 }
 
+std::array<Eigen::Vector2d, CameraRig::kMaxCameras> BundleLandmark::noOffsets() {
+  std::array<Eigen::Vector2d, CameraRig::kMaxCameras> offsets;
+  offsets.fill(Eigen::Vector2d::Zero());
+  return offsets;
+}
+
+Eigen::VectorXd BundlePrior::difference(const std::vector<BundlePose>& all_poses, const BundleCalibration& now) const {
+  const int n = static_cast<int>(poses.size());
+  Eigen::VectorXd d(6 * n + calibration.size());
+  for (int i = 0; i < n; ++i) d.segment<6>(6 * i) = localDifference(linearization[i], all_poses[poses[i]]);
+  if (calibration.size() > 0) d.tail(calibration.size()) = calibration.differenceTo(now);
+  return d;
+}
+
 bool BundleAdjustment::error(const BundleLandmark& landmark, const BundleObservation& observation,
                              Eigen::Vector2d* error_px, Eigen::Vector2d* by_inverse_distance) const {
   const BundlePose& pose = poses[observation.pose];
-  const Eigen::Vector3d moved = pose.R.transpose() * (landmark.origin - pose.p) - observation.center;
-  const Eigen::Vector3d x = pose.R.transpose() * landmark.direction + landmark.inverse_distance * moved;
+  const CameraCorrection* correction = calibration.correction(observation.camera);
+  Eigen::Vector3d moved = pose.R.transpose() * (landmark.origin - pose.p) - observation.center;
+  Eigen::Vector3d x = pose.R.transpose() * landmark.direction + landmark.inverse_distance * moved;
+  if (correction) {
+    x = correction->R.transpose() * x;
+    moved = correction->R.transpose() * moved;
+  }
   const double depth = observation.bearing.dot(x);
   if (depth <= 1e-9) return false;
   *error_px = observation.to_pixel * x / depth;
   if (by_inverse_distance) {
     *by_inverse_distance = (observation.to_pixel * moved - *error_px * observation.bearing.dot(moved)) / depth;
   }
+  if (correction) *error_px += imageError(observation, *correction);
+  *error_px += landmark.offsets[observation.camera];
   return true;
 }
 
 double BundleAdjustment::normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const {
   Eigen::Vector2d error_px;
   return error(landmark, observation, &error_px) ? error_px.norm() / pixel_sigma : -1.0;
+}
+
+// Numbers the further cameras of a landmark by their first view; -1 for all others. Answers how many there are.
+int BundleAdjustment::furtherCameras(const BundleLandmark& landmark,
+                                     std::array<int, CameraRig::kMaxCameras>* offset_of) const {
+  offset_of->fill(-1);
+  if (offset_sigma <= 0.0) return 0;
+  int count = 0;
+  for (const BundleObservation& view : landmark.observations) {
+    if (view.camera == landmark.observations.front().camera || (*offset_of)[view.camera] >= 0) continue;
+    (*offset_of)[view.camera] = count++;
+  }
+  return count;
+}
+
+Eigen::Matrix2d BundleAdjustment::offsetCovariance(std::size_t landmark, int camera) const {
+  std::array<int, CameraRig::kMaxCameras> offset_of;
+  furtherCameras(landmarks[landmark], &offset_of);
+  const LandmarkBlock& block = blocks_[landmark];
+  if (offset_of[camera] < 0 || block.segment_count == 0) {
+    return std::pow(offset_sigma, 2) * Eigen::Matrix2d::Identity();
+  }
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(block.depth, 2);
+  unit.block<2, 2>(3 + 2 * offset_of[camera], 0).setIdentity();
+  const Eigen::Map<const Eigen::MatrixXd> L(values_.data() + block.L, block.depth, block.depth);
+  L.triangularView<Eigen::Lower>().solveInPlace(unit);
+  return pixel_sigma * pixel_sigma * unit.transpose() * unit;
 }
 
 double BundleAdjustment::cost(const BundleOptions& options) const {
@@ -79,6 +168,10 @@ double BundleAdjustment::cost(const BundleOptions& options) const {
       const double error = normalizedError(landmark, observation);
       sum += robustCost(error < 0.0 ? 1e6 : error * error, options.robust_width);
     }
+    if (offset_sigma <= 0.0) continue;
+    for (const Eigen::Vector2d& offset : landmark.offsets) {
+      sum += 0.5 * offset.squaredNorm() / std::pow(offset_sigma, 2);
+    }
   }
   for (const MotionFactor& factor : factors) {
     const BundlePose& a = poses[factor.pose_a];
@@ -87,106 +180,256 @@ double BundleAdjustment::cost(const BundleOptions& options) const {
     const Eigen::Vector3d t = a.R.transpose() * (b.p - a.p) - factor.p_b_a;
     sum += 0.5 * r.dot(factor.rotation_information * r) + 0.5 * t.dot(factor.translation_information * t);
   }
-  if (!prior.poses.empty()) {
-    Eigen::VectorXd d(prior.b.size());
-    for (std::size_t i = 0; i < prior.poses.size(); ++i) {
-      d.segment<6>(6 * i) = localDifference(prior.linearization[i], poses[prior.poses[i]]);
-    }
+  if (!prior.empty()) {
+    const Eigen::VectorXd d = prior.difference(poses, calibration);
     sum += 0.5 * d.dot(prior.H * d) - prior.b.dot(d);
   }
   return sum;
 }
 
-void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& options, const std::vector<char>* use,
-                                        Eigen::MatrixXd* H, Eigen::VectorXd* b) {
-  const int size = 6 * static_cast<int>(poses.size());
-  H->setZero(size, size);
-  b->setZero(size);
-  blocks_.resize(landmarks.size());
-  couplings_.clear();
-  weight_sum_ = weight_square_sum_ = weighted_squares_ = 0.0;
-  const double inverse_sigma = 1.0 / pixel_sigma;
-  const double distance_information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
-
-  for (std::size_t l = 0; l < landmarks.size(); ++l) {
-    const BundleLandmark& landmark = landmarks[l];
-    LandmarkBlock& block = blocks_[l];
-    block.first_coupling = static_cast<int>(couplings_.size());
-    block.coupling_count = 0;
-    if (use && !(*use)[l]) continue;
-
-    const Eigen::Matrix<double, 3, 2> tangent = tangentBasis(landmark.direction);
-    Eigen::Matrix3d landmark_H = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d landmark_b = Eigen::Vector3d::Zero();
-    landmark_H(2, 2) = distance_information;
-    landmark_b(2) = -distance_information * landmark.inverse_distance;
-
+// Against landmarks that stay as they are the poses alone are estimated.
+void BundleAdjustment::accumulateAgainstFixed(const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b) {
+  for (const BundleLandmark& landmark : landmarks) {
     for (const BundleObservation& observation : landmark.observations) {
       const BundlePose& pose = poses[observation.pose];
-      const Eigen::Vector3d from_body =
-          pose.R.transpose() * (landmark.direction + landmark.inverse_distance * (landmark.origin - pose.p));
+      const CameraCorrection* correction = calibration.correction(observation.camera);
+      const Eigen::Vector3d from_body = fromBody(pose, landmark);
+      Eigen::Vector2d error_px;
+      if (!error(landmark, observation, &error_px)) continue;
       const Eigen::Vector3d x = from_body - landmark.inverse_distance * observation.center;
-      const double depth = observation.bearing.dot(x);
-      if (depth <= 1e-9) continue;
-
-      const Eigen::Vector2d residual = observation.to_pixel * x * (inverse_sigma / depth);
-      const double square = residual.squaredNorm();
-      const double weight = robustWeight(square, options.robust_width);
-      weight_sum_ += weight;
-      weight_square_sum_ += weight * weight;
-      weighted_squares_ += weight * square;
-
-      Eigen::Matrix<double, 2, 3> d_x = observation.to_pixel * (inverse_sigma / depth);
-      d_x -= residual * observation.bearing.transpose() / depth;
+      Eigen::Matrix3d C = Eigen::Matrix3d::Identity();
+      if (correction) C = correction->R.transpose();
+      const double depth = observation.bearing.dot(C * x);
+      const Eigen::Vector2d projected = observation.to_pixel * C * x / depth;
+      const Eigen::Vector2d residual = error_px / pixel_sigma;
+      const double weight = robustWeight(residual.squaredNorm(), options.robust_width);
+      const Eigen::Matrix<double, 2, 3> d_x =
+          (observation.to_pixel - projected * observation.bearing.transpose()) * C / (pixel_sigma * depth);
       Eigen::Matrix<double, 2, 6> d_pose;
       d_pose.leftCols<3>() = -landmark.inverse_distance * d_x;
       d_pose.rightCols<3>() = d_x * skew(from_body);
       const int row = 6 * observation.pose;
       H->block<6, 6>(row, row).noalias() += weight * d_pose.transpose() * d_pose;
       b->segment<6>(row).noalias() -= weight * d_pose.transpose() * residual;
-      if (options.fix_landmarks) continue;
-
-      Eigen::Matrix<double, 2, 3> d_landmark;
-      d_landmark.leftCols<2>() = d_x * (pose.R.transpose() * tangent);
-      d_landmark.col(2) = d_x * (pose.R.transpose() * (landmark.origin - pose.p) - observation.center);
-      landmark_H.noalias() += weight * d_landmark.transpose() * d_landmark;
-      landmark_b.noalias() -= weight * d_landmark.transpose() * residual;
-
-      Coupling* coupling = nullptr;
-      for (int c = 0; c < block.coupling_count; ++c) {
-        Coupling& candidate = couplings_[block.first_coupling + c];
-        if (candidate.pose == observation.pose) coupling = &candidate;
-      }
-      if (!coupling) {
-        couplings_.push_back({observation.pose, Eigen::Matrix<double, 6, 3>::Zero()});
-        coupling = &couplings_.back();
-        ++block.coupling_count;
-      }
-      coupling->W.noalias() += weight * d_pose.transpose() * d_landmark;
     }
+  }
+}
 
-    landmark_H.diagonal() *= 1.0 + lambda;
-    landmark_H.diagonal().head<2>().array() += 1e-9;
-    block.H_inverse = landmark_H.inverse();
-    block.b = landmark_b;
-    for (int i = 0; i < block.coupling_count; ++i) {
-      const Coupling& a = couplings_[block.first_coupling + i];
-      const Eigen::Matrix<double, 6, 3> a_inverse = a.W * block.H_inverse;
-      b->segment<6>(6 * a.pose).noalias() -= a_inverse * landmark_b;
-      for (int j = 0; j < block.coupling_count; ++j) {
-        const Coupling& c = couplings_[block.first_coupling + j];
-        if (c.pose < a.pose) continue;
-        H->block<6, 6>(6 * a.pose, 6 * c.pose).noalias() -= a_inverse * c.W.transpose();
+template <int Depth>
+void BundleAdjustment::accumulateLandmark(const BundleLandmark& landmark, const int* offset_of, double lambda,
+                                          const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b,
+                                          LandmarkBlock* block) {
+  const int depth = Depth == Eigen::Dynamic ? block->depth : Depth;
+  constexpr bool kOffsets = Depth != 3;
+  constexpr int kMaxDepth = Depth == Eigen::Dynamic ? kMostUnknowns : Depth;
+  using Square = Eigen::Matrix<double, Depth, Depth, Eigen::ColMajor, kMaxDepth, kMaxDepth>;
+  using Vector = Eigen::Matrix<double, Depth, 1, Eigen::ColMajor, kMaxDepth, 1>;
+  const double inverse_sigma = 1.0 / pixel_sigma;
+  const double distance_information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
+  const double offset_information = kOffsets ? std::pow(pixel_sigma / offset_sigma, 2) : 0.0;
+
+  Square landmark_H = Square::Zero(depth, depth);
+  Vector landmark_b = Vector::Zero(depth);
+  landmark_H(2, 2) = distance_information;
+  landmark_b(2) = -distance_information * landmark.inverse_distance;
+  // The offsets are unknowns in image sigmas.
+  if constexpr (kOffsets) {
+    for (int camera = 0; camera < CameraRig::kMaxCameras; ++camera) {
+      if (offset_of[camera] < 0) continue;
+      const int at = 3 + 2 * offset_of[camera];
+      landmark_H(at, at) = landmark_H(at + 1, at + 1) = offset_information;
+      landmark_b.template segment<2>(at) = -offset_information * inverse_sigma * landmark.offsets[camera];
+    }
+  }
+
+  const Eigen::Matrix<double, 3, 2> tangent = tangentBasis(landmark.direction);
+  const auto segmentOf = [&](int column, int rows) {
+    for (int s = block->segment_count - 1; s >= 0; --s) {
+      const Segment& known = segments_[block->first_segment + s];
+      if (known.column == column) return known.at;
+    }
+    const int at = static_cast<int>(values_.size());
+    values_.resize(at + rows * depth, 0.0);
+    segments_.push_back({column, rows, at});
+    ++block->segment_count;
+    return at;
+  };
+
+  for (const BundleObservation& observation : landmark.observations) {
+    const BundlePose& pose = poses[observation.pose];
+    const CameraCorrection* correction = calibration.correction(observation.camera);
+    const Eigen::Vector3d from_body = fromBody(pose, landmark);
+    Eigen::Vector3d x = from_body - landmark.inverse_distance * observation.center;
+    if (correction) x = correction->R.transpose() * x;
+    const double z = observation.bearing.dot(x);
+    if (z <= 1e-9) continue;
+
+    const Eigen::Vector2d projected = observation.to_pixel * x * (inverse_sigma / z);
+    Eigen::Vector2d residual = projected;
+    if (correction) residual += inverse_sigma * imageError(observation, *correction);
+    residual += inverse_sigma * landmark.offsets[observation.camera];
+    const int offset = offset_of[observation.camera];
+    const double square = residual.squaredNorm();
+    const double weight = robustWeight(square, options.robust_width);
+    weight_sum_ += weight;
+    weight_square_sum_ += weight * weight;
+    weighted_squares_ += weight * square;
+
+    Eigen::Matrix<double, 2, 3> d_camera = observation.to_pixel * (inverse_sigma / z);  // by x in camera axes
+    d_camera -= projected * observation.bearing.transpose() / z;
+    const Eigen::Matrix<double, 2, 3> d_x =
+        correction ? Eigen::Matrix<double, 2, 3>(d_camera * correction->R.transpose()) : d_camera;
+    Eigen::Matrix<double, 2, 6> d_pose;
+    d_pose.leftCols<3>() = -landmark.inverse_distance * d_x;
+    d_pose.rightCols<3>() = d_x * skew(from_body);
+    Eigen::Matrix<double, 2, 3> d_landmark;
+    d_landmark.leftCols<2>() = d_x * (pose.R.transpose() * tangent);
+    d_landmark.col(2) = d_x * (pose.R.transpose() * (landmark.origin - pose.p) - observation.center);
+    const Eigen::Matrix<double, 6, 2> weighted_pose = weight * d_pose.transpose();
+    const Eigen::Matrix<double, 3, 2> weighted_landmark = weight * d_landmark.transpose();
+
+    const int row = 6 * observation.pose;
+    H->block<6, 6>(row, row).noalias() += weighted_pose * d_pose;
+    b->segment<6>(row).noalias() -= weighted_pose * residual;
+    landmark_H.template topLeftCorner<3, 3>().noalias() += weighted_landmark * d_landmark;
+    landmark_b.template head<3>().noalias() -= weighted_landmark * residual;
+    const int at_pose = segmentOf(row, 6);
+    Rows<6, Depth> W(values_.data() + at_pose, 6, depth);
+    W.template leftCols<3>().noalias() += weighted_pose * d_landmark;
+    if constexpr (kOffsets) {
+      if (offset >= 0) {
+        const int at = 3 + 2 * offset;
+        landmark_H.template block<2, 3>(at, 0) += weighted_landmark.transpose();
+        landmark_H(at, at) += weight;
+        landmark_H(at + 1, at + 1) += weight;
+        landmark_b.template segment<2>(at) -= weight * residual;
+        W.template middleCols<2>(at) += weighted_pose;
       }
+    }
+    if (!correction) continue;
+
+    const int column = firstOfCalibration() + correction->column;
+    const int rows = correction->parameters();
+    const int at_camera = segmentOf(column, rows);
+    withRows(rows, [&](auto constant) {
+      constexpr int kRows = decltype(constant)::value;
+      Eigen::Matrix<double, 2, kRows> d_calibration;
+      if constexpr (kRows >= CameraCorrection::kRotation) d_calibration.template leftCols<3>() = d_camera * skew(x);
+      if constexpr (kRows == CameraCorrection::kAll) {
+        d_calibration.template rightCols<1 + kFieldTerms>() = inverse_sigma * imageErrors(observation);
+      } else {
+        d_calibration.template rightCols<1>() = inverse_sigma * observation.from_center;
+      }
+      const Eigen::Matrix<double, kRows, 2> weighted_calibration = weight * d_calibration.transpose();
+      H->template block<6, kRows>(row, column) += weighted_pose.lazyProduct(d_calibration);
+      H->template block<kRows, kRows>(column, column) += weighted_calibration.lazyProduct(d_calibration);
+      b->template segment<kRows>(column) -= weighted_calibration.lazyProduct(residual);
+      Rows<kRows, Depth> C(values_.data() + at_camera, kRows, depth);
+      C.template leftCols<3>() += weighted_calibration.lazyProduct(d_landmark);
+      if constexpr (kOffsets) {
+        if (offset >= 0) C.template middleCols<2>(3 + 2 * offset) += weighted_calibration;
+      }
+    });
+  }
+
+  landmark_unknowns_ += 3.0;
+  if constexpr (kOffsets) {
+    for (int at = 3; at < depth; ++at) landmark_unknowns_ += 1.0 - offset_information / landmark_H(at, at);
+    for (int at = 3; at + 1 < depth; at += 2) {
+      landmark_H.template block<3, 2>(0, at) = landmark_H.template block<2, 3>(at, 0).transpose();
+    }
+  }
+  landmark_H.diagonal().template head<3>() *= 1.0 + lambda;
+  landmark_H.diagonal().template head<2>().array() += 1e-9;
+  const Eigen::LLT<Square> llt(landmark_H);
+  const Vector y = llt.matrixL().solve(landmark_b);
+  block->L = static_cast<int>(values_.size());
+  block->y = block->L + depth * depth;
+  values_.resize(block->y + depth);
+  Eigen::Map<Eigen::Matrix<double, Depth, Depth>>(values_.data() + block->L, depth, depth) = llt.matrixLLT();
+  Eigen::Map<Vector>(values_.data() + block->y, depth) = y;
+
+  const Square U_inverse = llt.matrixU().solve(Square::Identity(depth, depth));
+  const Segment* segments = segments_.data() + block->first_segment;
+  for (int i = 0; i < block->segment_count; ++i) {
+    withRows(segments[i].rows, [&](auto rows) {
+      constexpr int kRows = decltype(rows)::value;
+      Rows<kRows, Depth> W(values_.data() + segments[i].at, kRows, depth);
+      W = RowsMatrix<kRows, Depth>(W.lazyProduct(U_inverse));
+      b->template segment<kRows>(segments[i].column) -= W.lazyProduct(y);
+    });
+  }
+  for (int i = 0; i < block->segment_count; ++i) {
+    withRows(segments[i].rows, [&](auto rows_i) {
+      constexpr int kRows = decltype(rows_i)::value;
+      const Rows<kRows, Depth> A(values_.data() + segments[i].at, kRows, depth);
+      for (int j = 0; j < block->segment_count; ++j) {
+        if (segments[j].column < segments[i].column) continue;
+        withRows(segments[j].rows, [&](auto rows_j) {
+          constexpr int kColumns = decltype(rows_j)::value;
+          const Rows<kColumns, Depth> B(values_.data() + segments[j].at, kColumns, depth);
+          H->template block<kRows, kColumns>(segments[i].column, segments[j].column) -= A.lazyProduct(B.transpose());
+        });
+      }
+    });
+  }
+}
+
+void BundleAdjustment::accumulateVision(double lambda, const BundleOptions& options, Eigen::MatrixXd* H,
+                                        Eigen::VectorXd* b) {
+  H->setZero(size(), size());
+  b->setZero(size());
+  blocks_.assign(landmarks.size(), LandmarkBlock());
+  segments_.clear();
+  values_.clear();
+  weight_sum_ = weight_square_sum_ = weighted_squares_ = landmark_unknowns_ = 0.0;
+  if (options.fix_landmarks) {
+    accumulateAgainstFixed(options, H, b);
+    return;
+  }
+  std::array<int, CameraRig::kMaxCameras> offset_of;
+  for (std::size_t l = 0; l < landmarks.size(); ++l) {
+    LandmarkBlock& block = blocks_[l];
+    block.first_segment = static_cast<int>(segments_.size());
+    block.depth = 3 + 2 * furtherCameras(landmarks[l], &offset_of);
+    if (block.depth == 3) {
+      accumulateLandmark<3>(landmarks[l], offset_of.data(), lambda, options, H, b, &block);
+    } else if (block.depth == 5) {
+      accumulateLandmark<5>(landmarks[l], offset_of.data(), lambda, options, H, b, &block);
+    } else {
+      accumulateLandmark<Eigen::Dynamic>(landmarks[l], offset_of.data(), lambda, options, H, b, &block);
     }
   }
   H->triangularView<Eigen::StrictlyLower>() = H->transpose();
 }
 
+void BundleAdjustment::moveLandmarks(const Eigen::VectorXd& step) {
+  std::array<int, CameraRig::kMaxCameras> offset_of;
+  for (std::size_t l = 0; l < landmarks.size(); ++l) {
+    const LandmarkBlock& block = blocks_[l];
+    if (block.segment_count == 0) continue;
+    BundleLandmark& landmark = landmarks[l];
+    Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(values_.data() + block.y, block.depth);
+    for (int s = 0; s < block.segment_count; ++s) {
+      const Segment& segment = segments_[block.first_segment + s];
+      const Eigen::Map<const Eigen::MatrixXd> A(values_.data() + segment.at, segment.rows, block.depth);
+      d.noalias() -= A.transpose() * step.segment(segment.column, segment.rows);
+    }
+    const Eigen::Map<const Eigen::MatrixXd> L(values_.data() + block.L, block.depth, block.depth);
+    L.triangularView<Eigen::Lower>().transpose().solveInPlace(d);
+    landmark.direction = (landmark.direction + tangentBasis(landmark.direction) * d.head<2>()).normalized();
+    landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kSmallestInverseDistance);
+    if (block.depth == 3) continue;
+    furtherCameras(landmark, &offset_of);
+    for (int camera = 0; camera < CameraRig::kMaxCameras; ++camera) {
+      if (offset_of[camera] >= 0) landmark.offsets[camera] += pixel_sigma * d.segment<2>(3 + 2 * offset_of[camera]);
+    }
+  }
+}
+
 void BundleAdjustment::accumulateRest(Eigen::MatrixXd* H, Eigen::VectorXd* b) const {
-  const int size = 6 * static_cast<int>(poses.size());
-  H->setZero(size, size);
-  b->setZero(size);
+  H->setZero(size(), size());
+  b->setZero(size());
   for (const MotionFactor& factor : factors) {
     const BundlePose& pa = poses[factor.pose_a];
     const BundlePose& pb = poses[factor.pose_b];
@@ -216,77 +459,85 @@ void BundleAdjustment::accumulateRest(Eigen::MatrixXd* H, Eigen::VectorXd* b) co
     b->segment<6>(ia) += Jtr.head<6>();
     b->segment<6>(ib) += Jtr.tail<6>();
   }
-  const int n = static_cast<int>(prior.poses.size());
-  if (n == 0) return;
-  Eigen::VectorXd d(6 * n);
-  for (int i = 0; i < n; ++i) {
-    d.segment<6>(6 * i) = localDifference(prior.linearization[i], poses[prior.poses[i]]);
+  if (prior.empty()) return;
+  const Eigen::VectorXd prior_b = prior.b - prior.H * prior.difference(poses, calibration);
+  std::vector<int> columns;
+  for (const int pose : prior.poses) {
+    for (int i = 0; i < 6; ++i) columns.push_back(6 * pose + i);
   }
-  const Eigen::VectorXd prior_b = prior.b - prior.H * d;
-  for (int i = 0; i < n; ++i) {
-    b->segment<6>(6 * prior.poses[i]) += prior_b.segment<6>(6 * i);
-    for (int j = 0; j < n; ++j) {
-      H->block<6, 6>(6 * prior.poses[i], 6 * prior.poses[j]) += prior.H.block<6, 6>(6 * i, 6 * j);
-    }
+  for (int i = 0; i < prior.calibration.size(); ++i) columns.push_back(firstOfCalibration() + i);
+  const int n = static_cast<int>(columns.size());
+  for (int j = 0; j < n; ++j) {
+    (*b)[columns[j]] += prior_b[j];
+    for (int i = 0; i < n; ++i) (*H)(columns[i], columns[j]) += prior.H(i, j);
+  }
+}
+
+void BundleAdjustment::holdConsidered(Eigen::MatrixXd* H, Eigen::VectorXd* b) const {
+  for (const int considered : calibration.considered()) {
+    const int column = firstOfCalibration() + considered;
+    H->col(column).setZero();
+    H->row(column).setZero();
+    (*H)(column, column) = 1.0;
+    (*b)[column] = 0.0;
   }
 }
 
 void BundleAdjustment::linearize(Eigen::MatrixXd* vision_H, Eigen::VectorXd* vision_b, Eigen::MatrixXd* rest_H,
-                                 Eigen::VectorXd* rest_b, const BundleOptions& options, const std::vector<char>* use) {
-  accumulateVision(0.0, options, use, vision_H, vision_b);
+                                 Eigen::VectorXd* rest_b, const BundleOptions& options) {
+  accumulateVision(0.0, options, vision_H, vision_b);
   accumulateRest(rest_H, rest_b);
 }
 
 BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
   BundleSummary summary;
-  const int size = 6 * static_cast<int>(poses.size());
-  const int fixed = prior.poses.empty() && !options.fix_landmarks ? 6 : 0;  // the first pose is the gauge
-  Eigen::MatrixXd H(size, size), rest_H(size, size);
-  Eigen::VectorXd b(size), rest_b(size), step(size);
+  const int fixed = prior.empty() && !options.fix_landmarks ? 6 : 0;  // the first pose is the gauge
+  // Against fixed landmarks the calibration is fixed too.
+  const int free = (options.fix_landmarks ? 6 * static_cast<int>(poses.size()) : size()) - fixed;
+  Eigen::MatrixXd H(size(), size()), rest_H(size(), size());
+  Eigen::VectorXd b(size()), rest_b(size()), step = Eigen::VectorXd::Zero(size());
   double lambda = 1e-5;
   summary.cost = cost(options);
 
   std::vector<BundlePose> old_poses;
-  std::vector<std::pair<Eigen::Vector3d, double>> old_landmarks(landmarks.size());
+  BundleCalibration old_calibration;
+  struct Values {
+    Eigen::Vector3d direction;
+    double inverse_distance;
+    decltype(BundleLandmark::offsets) offsets;
+  };
+  std::vector<Values> old_landmarks(landmarks.size());
   for (; summary.iterations < options.max_iterations; ++summary.iterations) {
-    accumulateVision(lambda, options, nullptr, &H, &b);
+    accumulateVision(lambda, options, &H, &b);
     accumulateRest(&rest_H, &rest_b);
     H += rest_H;
     b += rest_b;
+    holdConsidered(&H, &b);
     H.diagonal() *= 1.0 + lambda;
     H.diagonal().array() += 1e-9;
-    step.setZero();
-    if (size > fixed) {
-      step.tail(size - fixed) = symmetricSolve(H.bottomRightCorner(size - fixed, size - fixed), b.tail(size - fixed));
-    }
+    if (free > 0) step.segment(fixed, free) = symmetricSolve(H.block(fixed, fixed, free, free), b.segment(fixed, free));
     if (!step.allFinite()) {
       summary.finite = false;
       break;
     }
 
     old_poses = poses;
-    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = retract(poses[i], step.segment<6>(6 * i));
+    old_calibration = calibration;
     for (std::size_t l = 0; l < landmarks.size(); ++l) {
-      BundleLandmark& landmark = landmarks[l];
-      old_landmarks[l] = {landmark.direction, landmark.inverse_distance};
-      const LandmarkBlock& block = blocks_[l];
-      if (block.coupling_count == 0) continue;
-      Eigen::Vector3d rhs = block.b;
-      for (int c = 0; c < block.coupling_count; ++c) {
-        const Coupling& coupling = couplings_[block.first_coupling + c];
-        rhs.noalias() -= coupling.W.transpose() * step.segment<6>(6 * coupling.pose);
-      }
-      const Eigen::Vector3d d = block.H_inverse * rhs;
-      landmark.direction = (landmark.direction + tangentBasis(landmark.direction) * d.head<2>()).normalized();
-      landmark.inverse_distance = std::max(landmark.inverse_distance + d[2], kSmallestInverseDistance);
+      old_landmarks[l] = {landmarks[l].direction, landmarks[l].inverse_distance, landmarks[l].offsets};
     }
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = retract(poses[i], step.segment<6>(6 * i));
+    if (calibration.size() > 0) calibration = calibration.retracted(step.tail(calibration.size()));
+    moveLandmarks(step);
     const double new_cost = cost(options);
     const double decrease = summary.cost - new_cost;
     if (!(decrease >= 0.0)) {
       poses = old_poses;
+      calibration = old_calibration;
       for (std::size_t l = 0; l < landmarks.size(); ++l) {
-        landmarks[l].direction = old_landmarks[l].first;
-        landmarks[l].inverse_distance = old_landmarks[l].second;
+        landmarks[l].direction = old_landmarks[l].direction;
+        landmarks[l].inverse_distance = old_landmarks[l].inverse_distance;
+        landmarks[l].offsets = old_landmarks[l].offsets;
       }
       lambda = std::max(lambda, 1e-4) * 10.0;
       continue;
@@ -300,9 +551,7 @@ BundleSummary BundleAdjustment::solve(const BundleOptions& options) {
     }
   }
   summary.weighted_square_sum = weighted_squares_;
-  double unknowns = size - 6.0;
-  for (const LandmarkBlock& block : blocks_) unknowns += block.coupling_count > 0 ? 3.0 : 0.0;
-  summary.degrees_of_freedom = 2.0 * weight_sum_ - unknowns;
+  summary.degrees_of_freedom = 2.0 * weight_sum_ - (size() - 6.0) - landmark_unknowns_;
   return summary;
 }
 

@@ -18,6 +18,7 @@ constexpr double kMinInitializationS = 0.1;
 constexpr double kMinStillS = 0.3;  // quiet for less may as well be a smooth curve
 constexpr double kMaxStepS = 0.02;
 constexpr int kMaxSteps = 500;
+constexpr double kSpacingGain = 0.1;  // of the newest sample in the mean spacing
 
 void requirePositive(const char* name, double value) {
   if (!(value > 0) || !std::isfinite(value)) {
@@ -74,6 +75,9 @@ InertialState::InertialState(const ImuCalibration& calibration, const InertialSt
   requireNotNegative("gyroscope_scale_sigma", options.gyroscope_scale_sigma);
   requireNotNegative("accelerometer_scale_sigma", options.accelerometer_scale_sigma);
   requireNotNegative("scale_error_time_s", options.scale_error_time_s);
+  requireNotNegative("length_sigma", options.length_sigma);
+  requireNotNegative("accelerometer_lasting_scale_sigma", options.accelerometer_lasting_scale_sigma);
+  requireNotNegative("motion_bandwidth_hz", options.motion_bandwidth_hz);
   requirePositive("motion_acceleration_sigma", options.motion_acceleration_sigma);
   requirePositive("still_acceleration_sigma", options.still_acceleration_sigma);
   requirePositive("still_rate_sigma", options.still_rate_sigma);
@@ -86,6 +90,10 @@ InertialState::InertialState(const ImuCalibration& calibration, const InertialSt
   accelerometer_variance_ = square(calibration.accelerometer_noise_density) + square(options.accelerometer_noise_floor);
   gyroscope_walk_variance_ = square(calibration.gyroscope_random_walk);
   accelerometer_walk_variance_ = square(calibration.accelerometer_random_walk);
+  sample_spacing_ = 1.0 / calibration.rate_hz;
+  if (options.length_sigma > 0.0) {
+    covariance_(kLength, kLength) = square(options.length_sigma) + square(accelerometerScaleSigma());
+  }
   forgetBiases();
 }
 
@@ -112,8 +120,10 @@ bool InertialState::initialize(const std::vector<ImuSample>& samples, const Eige
   }
 
   const Eigen::Matrix<double, 6, 6> bias_covariance = covariance_.block<6, 6>(kGyroscopeBias, kGyroscopeBias);
+  const double length_variance = covariance_(kLength, kLength);
   covariance_.setZero();
   covariance_.block<6, 6>(kGyroscopeBias, kGyroscopeBias) = bias_covariance;
+  covariance_(kLength, kLength) = length_variance;
   const double velocity_variance = options_.initial_velocity_sigma * options_.initial_velocity_sigma;
   covariance_.block<3, 3>(kVelocity, kVelocity) = velocity_variance * Eigen::Matrix3d::Identity();
   covariance_(kTheta, kTheta) = covariance_(kTheta + 1, kTheta + 1) = 1.0;  // no idea before the accelerometer is asked
@@ -175,6 +185,11 @@ void InertialState::propagate(const ImuSample& sample, double spacing_s) {
   // The rate and acceleration that a gap leaves unseen are constant over it: the variance of their integral, spread
   // evenly. Their part between samples is what a straight line misses.
   const double gap_s = std::max(spacing_s, secondsBetween(last_, sample));
+  const double known = square(accelerometerScaleSigma());
+  sample_spacing_ += kSpacingGain * (std::min(gap_s, options_.max_sample_gap_s) - sample_spacing_);
+  if (options_.length_sigma > 0.0) {
+    covariance_(kLength, kLength) += std::max(0.0, square(accelerometerScaleSigma()) - known);
+  }
   const double share = std::min(1.0, square(gap_s / options_.max_sample_gap_s));
   Unseen unseen;
   unseen.rate_density = gap_s * square(share * options_.gap_rate_sigma);
@@ -259,6 +274,7 @@ void InertialState::step(const ImuSample& sample, const Unseen& unseen) {
   last_ = sample;
 
   if (unseen.force) {
+    force_seen_ = false;
     window_ = ForceWindow();
     return;
   }
@@ -310,6 +326,7 @@ void InertialState::propagateCovariance(const Eigen::Vector3d& rate, const Eigen
 void InertialState::markFrame() {
   R_odom_frame_ = R_odom_imu_;
   frame_stamp_ns_ = last_.stamp_ns;
+  force_seen_ = true;
   displacement_.setZero();
   rotation_noise_.setZero();
   rotation_bias_jacobian_.setZero();
@@ -335,15 +352,22 @@ void InertialState::restartAt(std::int64_t stamp_ns, double attitude_sigma) {
   markFrame();
 }
 
-void InertialState::addCommonError(const InertialState& other) {
-  ErrorState error;
+void InertialState::addCommonError(const InertialState& other, double noise_share, double length_share) {
+  ErrorState error = ErrorState::Zero();
   error.segment<3>(kTheta) = logSO3(other.R_odom_imu_ * R_odom_imu_.transpose());
   error.segment<3>(kVelocity) = other.velocityInImuAxes() - velocityInImuAxes();
   error.segment<3>(kGyroscopeBias) = other.gyroscope_bias_ - gyroscope_bias_;
   error.segment<3>(kAccelerometerBias) = other.accelerometer_bias_ - accelerometer_bias_;
   error.segment<3>(kFrameTheta) = logSO3(other.R_odom_frame_ * R_odom_frame_.transpose());
   error.segment<3>(kDisplacement) = other.displacement_ - displacement_;
-  covariance_ += error * error.transpose();
+  covariance_ += square(noise_share) * error * error.transpose();
+  // Lengths that are too long truly are shorter.
+  const double length_sigma = lengthDisagreementSigma();
+  ErrorState with_length = length_share * error;
+  with_length[kLength] = -length_sigma;
+  covariance_.row(kLength).setZero();
+  covariance_.col(kLength).setZero();
+  covariance_ += with_length * with_length.transpose();
 }
 
 Eigen::Matrix3d InertialState::attitudeCovariance() const { return covariance_.block<3, 3>(kTheta, kTheta); }
@@ -384,6 +408,22 @@ Eigen::Matrix3d InertialState::rotationSinceFrameCovariance() const {
 
 Eigen::Matrix3d InertialState::displacementSinceFrameCovariance() const {
   return covariance_.block<3, 3>(kDisplacement, kDisplacement);
+}
+
+// A straight line between samples h apart shortens the amplitude of a motion of angular frequency w by (w h)^2 / 12.
+double InertialState::accelerometerScaleSigma() const {
+  const double by_spacing = square(2.0 * M_PI * options_.motion_bandwidth_hz * sample_spacing_) / 12.0;
+  return std::hypot(options_.accelerometer_lasting_scale_sigma, by_spacing);
+}
+
+double InertialState::visionShare() const {
+  const double vision = square(options_.length_sigma), accelerometer = square(accelerometerScaleSigma());
+  return vision > 0.0 ? vision / (vision + accelerometer) : 0.0;
+}
+
+double InertialState::lengthSigma() const {
+  const double share = visionShare();
+  return std::sqrt(square(share) * covariance_(kLength, kLength) + (1.0 - share) * square(options_.length_sigma));
 }
 
 Eigen::Matrix3d InertialState::gyroscopeBiasCovariance() const {

@@ -13,8 +13,9 @@ namespace {
 /// 99.9 % quantile of χ² for 2 and 3 degrees of freedom.
 constexpr double chiSquareGate(int degrees_of_freedom) { return degrees_of_freedom == 2 ? 13.816 : 16.266; }
 
-constexpr double kKeptDoubt = 0.7;      // of the doubt in the gyroscope, from frame to frame
-constexpr double kIgnoredDoubt = 10.0;  // times its variance
+constexpr double kKnownVertical = 0.0175;  // sigma of its tilt: 1 deg [rad]
+constexpr double kKeptDoubt = 0.7;         // of the doubt in the gyroscope, from frame to frame
+constexpr double kIgnoredDoubt = 10.0;     // times its variance
 
 }  // namespace
 
@@ -66,10 +67,12 @@ void InertialState::doubtGyroscope(const Eigen::Vector3d& residual, bool recover
   }
 }
 
-bool InertialState::correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance) {
+bool InertialState::correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance,
+                                        const Eigen::Vector3d& by_length) {
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(kDisplacement).setIdentity();
-  const Eigen::Vector3d residual = p_1_2 - displacement_;
+  H.col(kLength) = by_length;
+  const Eigen::Vector3d residual = p_1_2 - displacement_ - length_error_ * by_length;
   const double duration = std::max(1e-3, 1e-9 * static_cast<double>(last_.stamp_ns - frame_stamp_ns_));
   return correctMotion(residual, H, covariance, residual.norm() / duration);
 }
@@ -189,6 +192,11 @@ bool InertialState::correct(const VectorRef& residual, const MatrixRef& H, const
   if (!learn_accelerometer_bias) {
     gain.middleRows<3>(kAccelerometerBias).setZero();
   }
+  // The filter is linear in small tilts only: while the vertical is being found, what is wrong with it would be taken
+  // for an error of the lengths. Without samples nothing is known of them.
+  if (!force_seen_ || tiltSigma() > kKnownVertical) {
+    gain.row(kLength).setZero();
+  }
   const Covariance remaining = Covariance::Identity() - gain * H;  // Joseph form, right for any gain
   covariance_ = propagated(remaining, covariance_) + propagated(gain, symmetric_noise);
   inject(gain * residual);
@@ -214,6 +222,7 @@ void InertialState::inject(const ErrorState& error) {
   gyroscope_bias_ += error.segment<3>(kGyroscopeBias);
   accelerometer_bias_ += error.segment<3>(kAccelerometerBias);
   displacement_ += error.segment<3>(kDisplacement);
+  length_error_ += error[kLength];
 }
 
 }  // namespace multicam_egomotion

@@ -8,8 +8,9 @@
 
 namespace multicam_egomotion {
 namespace {
-constexpr double kAccelerationSigma = 3.0;  // a body's speed changes by about this [m/s^2]
-constexpr double kInitialTiltSigma = 0.1;   // the body is taken to stand level at the start [rad]
+// How a body's velocity changes between two frames, per axis: vehicles brake and hands move with a few m/s^2 [m/s^2].
+constexpr double kAccelerationSigma = 3.0;
+constexpr double kInitialTiltSigma = 0.1;  // the body is taken to stand level at the start [rad]
 }  // namespace
 
 ConstantRateMotion::ConstantRateMotion(double rotation_sigma, double velocity_sigma)
@@ -43,19 +44,24 @@ void ConstantRateMotion::correct(const RelativeMotion& vision, bool scale_seen) 
   up_ = (vision.T_a_b.linear().transpose() * up_).normalized();
   twist_.angular = logSO3(vision.T_a_b.linear()) / dt;
   const Eigen::Matrix3d to_now = vision.T_a_b.linear().transpose();
-  const Eigen::Vector3d velocity = to_now * vision.T_a_b.translation() / dt;
   const double change = kAccelerationSigma * dt;
   const Eigen::Matrix3d drift = change * change * Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d covariance = propagated(to_now, vision.covariance.topLeftCorner<3, 3>()) / (dt * dt) + drift;
+  twist_.linear = (to_now * twist_.linear).eval();
+  Eigen::Matrix3d covariance = propagated(to_now, twist_.covariance.topLeftCorner<3, 3>() + drift);
+  const Eigen::Vector3d mean_velocity = to_now * vision.T_a_b.translation() / dt;
   if (scale_seen) {
-    twist_.linear = velocity;
-  } else {  // the direction is vision's, the speed is what it was
-    const double speed = twist_.linear.norm();
-    if (velocity.norm() > 1e-9) twist_.linear = velocity.normalized() * speed;
-    covariance = twist_.covariance.topLeftCorner<3, 3>() + drift;
-    const double largest = velocity_sigma_ * velocity_sigma_;
-    if (covariance.trace() > 3.0 * largest) covariance = largest * Eigen::Matrix3d::Identity();
+    // The mean velocity since the last frame: half of the change comes after it.
+    const Eigen::Matrix3d noise =
+        propagated(to_now, vision.covariance.topLeftCorner<3, 3>()) / (dt * dt) + 0.25 * drift;
+    const Eigen::Matrix3d gain = symmetricSolve(covariance + noise, covariance).transpose();
+    twist_.linear += gain * (mean_velocity - twist_.linear);
+    const Eigen::Matrix3d remaining = Eigen::Matrix3d::Identity() - gain;
+    covariance = propagated(remaining, covariance) + propagated(gain, noise);
+  } else if (mean_velocity.norm() > 1e-9) {  // the direction is vision's, the speed is what it was
+    twist_.linear = (mean_velocity.normalized() * twist_.linear.norm()).eval();
   }
+  const double largest = velocity_sigma_ * velocity_sigma_;
+  if (covariance.trace() > 3.0 * largest) covariance = largest * Eigen::Matrix3d::Identity();
   twist_.covariance.setZero();
   twist_.covariance.topLeftCorner<3, 3>() = covariance;
   twist_.covariance.bottomRightCorner<3, 3>() =

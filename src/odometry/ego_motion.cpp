@@ -8,9 +8,11 @@
 #include <unordered_set>
 #include <utility>
 
+#include "multicam_egomotion/geometry/covariance.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/gyroscope_check.h"
 #include "multicam_egomotion/imu/imu_mounting.h"
+#include "multicam_egomotion/odometry/calibrated_rig.h"
 #include "multicam_egomotion/odometry/camera_poses.h"
 #include "multicam_egomotion/odometry/coasting.h"
 #include "multicam_egomotion/odometry/feature_report.h"
@@ -39,6 +41,8 @@ constexpr double kManyMore = 1.5;              // times the inliers without the 
 constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
 constexpr double kPoorScale = 0.05;            // sigma of the scale above which its error lasts
 constexpr double kContradicted = 6.0;          // accelerometer and images disagree; 3 is what noise makes
+constexpr double kSlackSigmas = 6.0;           // of a rotation within which matches are sought: beyond what is a fault
+constexpr double kFaultSigmas = 4.0;           // of what the rig file may be wrong by, contract 15
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -54,13 +58,17 @@ class EgoMotion::Impl {
         input_(rig, imu, options),
         tracker_(rig, options.tracker),
         R_body_imu_(imu.T_body_imu.linear()),
-        window_(options.window),
-        coasting_(options.max_coast_s) {
+        window_(options.window, RigCalibration(rig, options.calibrate_online)),
+        coasting_(options.max_coast_s),
+        rig_length_sigma_(RigCalibration(rig, options.calibrate_online).lengthSigma()),
+        first_camera_(rig.camera(0).T_body_cam.translation()) {
     validate(options);
     options_.inertial.initial_velocity_sigma = options.initial_velocity_sigma;
+    if (options.calibrate_online) options_.inertial.length_sigma = rig_length_sigma_;
     if (options.use_imu) {
       auto motion =
-          std::make_unique<InertialMotion>(imu, options_.inertial, &input_.imu(), options.imu_orientation == "message");
+          std::make_unique<InertialMotion>(imu, options_.inertial, &input_.imu(), options.imu_orientation == "message",
+                                           rig.camera(0).sigmas.time_offset_s, first_camera_);
       inertial_ = motion.get();
       motion_ = std::move(motion);
     } else {
@@ -128,7 +136,37 @@ class EgoMotion::Impl {
           "accelerometer disagrees with the images: axes or units of the IMU, T_body_imu or poses of the cameras "
           "wrong?");
     }
-    for (const std::string& fault : tracker_.calibrationCheck().faults()) all.push_back(fault);
+    const double length_error = motion_->lengthError();
+    if (std::abs(length_error) > kFaultSigmas * options_.inertial.length_sigma && length_error != 0.0) {
+      char text[160];
+      std::snprintf(
+          text, sizeof(text),
+          "lengths are %.1f %% off by the accelerometer, expected at most %.1f %%: check the distances between "
+          "the cameras, focal lengths and the IMU's units",
+          100.0 * length_error, 100.0 * kFaultSigmas * options_.inertial.length_sigma);
+      all.push_back(text);
+    }
+    for (const std::string& fault : calibrationFaults(rig_, calibration())) all.push_back(fault);
+    return all;
+  }
+
+  std::vector<CameraCalibration> calibration() const {
+    std::vector<CameraCalibration> all;
+    if (!options_.calibrate_online) return all;
+    for (int camera = 0; camera < rig_.size(); ++camera) {
+      const CameraCorrection* correction = window_.calibration().correction(camera);
+      if (!correction || !correction->turns) continue;
+      const Eigen::Matrix3d R_cam_body = rig_.camera(camera).T_body_cam.linear().transpose();
+      CameraCalibration one;
+      one.camera = camera;
+      one.rotation = R_cam_body * logSO3(correction->R);
+      one.covariance =
+          propagated(R_cam_body, window_.calibrationCovariance().block<3, 3>(correction->column, correction->column));
+      one.overlaps = correction->has_field;
+      one.focal_length = correction->focal_length;
+      one.static_error_px = rmsOverImage(correction->field);
+      all.push_back(one);
+    }
     return all;
   }
 
@@ -194,28 +232,56 @@ class EgoMotion::Impl {
     if (anew) tracker_.reset();
     bool estimated = true;
     PosedFrame newest;
-    newest.T_body_cam = cameraPoses(rig_, *set, stamp_ns, motion_->twist());
+    std::vector<Eigen::Isometry3d> as_in_file = cameraPoses(rig_, *set, stamp_ns, motion_->twist());
+    for (Eigen::Isometry3d& T_body_cam : as_in_file) {
+      T_body_cam.translation() = first_camera_ + length_factor_ * (T_body_cam.translation() - first_camera_);
+    }
+    newest.T_body_cam = corrected(as_in_file);
+    newest.turn_sigma_px = turnSigmas();
+    std::vector<double> slack_px = newest.turn_sigma_px;
+    for (double& slack : slack_px) slack *= kSlackSigmas;
+    tracker_.setEpipolarSlack(slack_px);
     newest.frame = tracker_.track(*set, first ? Eigen::Isometry3d::Identity() : motion.T_a_b, newest.T_body_cam);
     newest.frame.stamp_ns = set->stamp_ns;
     stage("tracking");
 
     if (first) {
-      begin(newest, &result);
+      begin(newest, as_in_file, &result);
     } else {
       result.previous_stamp_ns = last_stamp_ns_;
-      estimated = !anew && estimate(newest, motion, &result);
-      if (!estimated) bridge(newest, motion, &result);
+      estimated = !anew && estimate(newest, as_in_file, motion, &result);
+      if (!estimated) bridge(newest, as_in_file, motion, &result);
       if (!estimated && !anew) ++counters_.estimation_failures;
     }
     motion_->markFrame();
     inertial_last_ns_ = stamp_ns;
     last_stamp_ns_ = set->stamp_ns;
     coasting_.markFrame(set->stamp_ns, estimated);
-    drift_.follow(published_.pose().translation(), tiltVariance(), estimated ? lastingScaleSigma(result) : 0.0);
+    drift_.follow(published_.pose().translation(), tiltVariance(),
+                  std::max(lengthSigma(), estimated ? lastingScaleSigma(result) : 0.0));
     fillState(*motion_, &result);
     result.features = reportFeatures(previous_.frame, newest.frame, inlier_tracks_);
     previous_ = std::move(newest);
     stage("frame");
+  }
+
+  // The poses of the cameras with what has been learnt of their rotations.
+  std::vector<Eigen::Isometry3d> corrected(std::vector<Eigen::Isometry3d> T_body_cam) const {
+    for (int camera = 0; camera < rig_.size(); ++camera) {
+      const CameraCorrection* correction = window_.calibration().correction(camera);
+      if (correction && correction->turns) T_body_cam[camera].linear() = correction->R * T_body_cam[camera].linear();
+    }
+    return T_body_cam;
+  }
+
+  // How far the rotation of each camera, as it is known by now, moves its image [px].
+  std::vector<double> turnSigmas() const {
+    std::vector<double> sigmas(rig_.size(), 0.0);
+    for (const CameraCalibration& one : calibration()) {
+      sigmas[one.camera] =
+          std::sqrt(one.covariance.diagonal().maxCoeff()) * rig_.camera(one.camera).model.focalLength();
+    }
+    return sigmas;
   }
 
   ExpectedMotion expected(const MotionSummary& motion, std::int64_t stamp_ns) const {
@@ -230,7 +296,7 @@ class EgoMotion::Impl {
   }
 
   // First frame of an odom epoch (contract 5).
-  void begin(const PosedFrame& newest, EgoMotionResult* result) {
+  void begin(const PosedFrame& newest, const std::vector<Eigen::Isometry3d>& T_body_cam, EgoMotionResult* result) {
     Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
     if (restart_pose_) {
       T_odom_body = *restart_pose_;
@@ -243,14 +309,14 @@ class EgoMotion::Impl {
     published_.start(T_odom_body);
     restart_pose_.reset();
     restart_covariance_.setZero();
-    startWindow(newest);
+    startWindow(newest, T_body_cam);
     result->keyframe = true;
     result->has_pose = true;
     result->status = EgoMotionStatus::kInitializing;
   }
 
-  void startWindow(const PosedFrame& newest) {
-    window_.start(newest.frame.stamp_ns, published_.pose(), covariance_, newest.frame, newest.T_body_cam);
+  void startWindow(const PosedFrame& newest, const std::vector<Eigen::Isometry3d>& T_body_cam) {
+    window_.start(newest.frame.stamp_ns, published_.pose(), covariance_, newest.frame, T_body_cam);
     tracker_.markKeyframe();
   }
 
@@ -284,7 +350,8 @@ class EgoMotion::Impl {
     }
   }
 
-  bool estimate(const PosedFrame& newest, const MotionSummary& predicted, EgoMotionResult* result) {
+  bool estimate(const PosedFrame& newest, const std::vector<Eigen::Isometry3d>& T_body_cam,
+                const MotionSummary& predicted, EgoMotionResult* result) {
     if (window_.empty()) return false;
     MotionSummary motion = predicted;
     const FrameConsensus consensus = agreement(newest, &motion);
@@ -296,7 +363,7 @@ class EgoMotion::Impl {
     if (!consensus.success) return false;
     tracker_.remove(consensus.outliers);
 
-    motion.use_translation = !scale_seen_;
+    motion.use_translation = !scale_seen_ || !inertial_;  // without an IMU nothing else says that bodies have inertia
     Eigen::Isometry3d along = consensus.T_previous_body;
     const double speed_sigma = std::sqrt(motion.translation_covariance.trace() / 3.0);
     double distance = motion.T_a_b.translation().norm();
@@ -306,7 +373,7 @@ class EgoMotion::Impl {
     }
     along.translation() = along.translation().normalized() * distance;
 
-    const WindowEstimate estimate = window_.add(without(newest.frame, consensus.outliers), newest.T_body_cam, motion,
+    const WindowEstimate estimate = window_.add(without(newest.frame, consensus.outliers), T_body_cam, motion,
                                                 {along, motion.T_a_b, consensus.T_previous_body});
     stage("window");
     if (!estimate.ok) return false;
@@ -317,10 +384,16 @@ class EgoMotion::Impl {
     inlier_tracks_.insert(estimate.inliers.begin(), estimate.inliers.end());
 
     compareWithGyroscope(estimate.vision.T_a_b.linear());
-    const LearnedMotion learned = learnedMotion(estimate, predicted.T_a_b.translation(), scale_seen_,
-                                                consensus.parallax_px, rig_.camera(0).model.focalLength());
+    LearnedMotion learned = learnedMotion(estimate, predicted.T_a_b.translation(), scale_seen_, consensus.parallax_px,
+                                          rig_.camera(0).model.focalLength());
+    learned.vision = asLongAsInFile(learned.vision);
     motion_->correct(learned.vision, learned.use_displacement);
-    if (inertial_) inertial_->reviseStart(estimate);
+    if (inertial_) {
+      WindowEstimate in_file = estimate;
+      in_file.vision = asLongAsInFile(estimate.vision);
+      in_file.relative = asLongAsInFile(estimate.relative);
+      inertial_->reviseStart(in_file);
+    }
     if (estimate.scale_state != ScaleState::kNotApplicable) {
       scale_seen_ = estimate.scale_state == ScaleState::kObservable;
     }
@@ -328,6 +401,7 @@ class EgoMotion::Impl {
     const double dt = seconds(newest.frame.stamp_ns - last_stamp_ns_);
     published_.follow(estimate.T_odom_previous, estimate.T_odom_body, dt);
     if (options_.use_imu) followVertical(estimate.T_odom_body.translation(), dt);
+    followLength();
     covariance_ = estimate.covariance;
     result->T_previous_body.pose = estimate.relative.T_a_b;
     result->T_previous_body.covariance = estimate.relative.covariance;
@@ -339,6 +413,32 @@ class EgoMotion::Impl {
     result->keyframe = estimate.keyframe;
     result->points = window_.points();
     return true;
+  }
+
+  // A motion of the window with the distances between the cameras that the rig file has.
+  RelativeMotion asLongAsInFile(RelativeMotion motion) const {
+    const Eigen::Vector3d turned = motion.T_a_b.linear() * first_camera_, arm = turned - first_camera_;
+    motion.T_a_b.translation() = (motion.T_a_b.translation() + arm) / length_factor_ - arm;
+    Matrix6d by_motion = Matrix6d::Identity();
+    by_motion.topLeftCorner<3, 3>() /= length_factor_;
+    by_motion.topRightCorner<3, 3>() = (1.0 - 1.0 / length_factor_) * skew(turned);
+    motion.covariance = propagated(by_motion, motion.covariance);
+    return motion;
+  }
+
+  // Of all lengths, by what is not known of the rig [1].
+  double lengthSigma() const {
+    const auto by_accelerometer = motion_->lengthSigma();
+    return options_.calibrate_online && by_accelerometer ? *by_accelerometer : rig_length_sigma_;
+  }
+
+  // Lengths follow what the accelerometer says of the distances between the cameras.
+  void followLength() {
+    window_.setLengthSigma(lengthSigma());
+    const double factor = 1.0 / (1.0 + motion_->lengthError());
+    if (factor == length_factor_) return;
+    window_.scale(factor / length_factor_, first_camera_);
+    length_factor_ = factor;
   }
 
   // Turns the attitude towards the vertical: at once while it is being found after a start in motion, later slowly
@@ -375,12 +475,13 @@ class EgoMotion::Impl {
   }
 
   // Vision failed or starts anew: the pose goes on with the predicted motion, the window starts anew from there.
-  void bridge(const PosedFrame& newest, const MotionSummary& motion, EgoMotionResult* result) {
+  void bridge(const PosedFrame& newest, const std::vector<Eigen::Isometry3d>& T_body_cam, const MotionSummary& motion,
+              EgoMotionResult* result) {
     inlier_tracks_.clear();
     const Matrix6d motion_covariance = poseCovariance(motion);
     covariance_ = propagateCovariance(covariance_, published_.pose(), motion.T_a_b, motion_covariance);
     published_.move(motion.T_a_b);
-    startWindow(newest);
+    startWindow(newest, T_body_cam);
     result->T_previous_body = {motion.T_a_b, motion_covariance};
     result->status = coasting_.status(newest.frame.stamp_ns);
     result->has_pose = result->has_relative_pose = result->status == EgoMotionStatus::kCoasting;
@@ -520,7 +621,10 @@ class EgoMotion::Impl {
   std::unordered_set<TrackId> inlier_tracks_;
   std::optional<Eigen::Isometry3d> restart_pose_;
   Matrix6d restart_covariance_ = Matrix6d::Zero();
-  bool restart_motion_ = false;  ///< at the next frame, after a jump of the clock
+  bool restart_motion_ = false;   ///< at the next frame, after a jump of the clock
+  double rig_length_sigma_;       ///< of all lengths, by the rig file [1]
+  Eigen::Vector3d first_camera_;  ///< its centre in the body [m]
+  double length_factor_ = 1.0;    ///< the distances between the cameras are this many times those of the rig file
   bool scale_seen_ = false;
   bool settled_ = false;  ///< the vertical has been found since the start of the odom epoch
   std::int64_t epoch_start_ns_ = 0;
@@ -548,6 +652,7 @@ const CameraRig& EgoMotion::rig() const { return impl_->rig_; }
 const EgoMotionOptions& EgoMotion::options() const { return impl_->options_; }
 EgoMotionCounters EgoMotion::counters() const { return impl_->counters(); }
 std::vector<std::string> EgoMotion::faults() const { return impl_->faults(); }
+std::vector<CameraCalibration> EgoMotion::calibration() const { return impl_->calibration(); }
 std::string EgoMotion::gyroscopeCheck() const { return impl_->gyroscope_check_.report(); }
 
 }  // namespace multicam_egomotion

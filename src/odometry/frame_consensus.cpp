@@ -15,6 +15,8 @@ namespace {
 constexpr double kLeastBaseline = 1e-3;  // stands for a motion that is not known at all [m]
 // The vertical at t2 follows from the predicted rotation; when that is worse than this, from a first estimate [rad].
 constexpr double kWideRotation = 0.0175;
+// Sigmas of a camera's rotation that must fit into the bound of an inlier for its matches with other cameras to count.
+constexpr double kSurelyAligned = 3.0;
 constexpr double kAxisSigmas = 20.0;  // the axis is used where the angle exceeds this many sigmas of its error
 
 // Translation of a single camera pair whose rotation is known: its four-point samples are degenerate (central). The
@@ -48,7 +50,7 @@ FrameConsensus findConsensus(const PosedFrame& previous, const PosedFrame& newes
                              const RobustEstimatorOptions& options, std::uint64_t seed) {
   FrameConsensus consensus;
   const Eigen::Matrix3d R_f2_f1 = motion.T_a_b.linear().transpose();
-  const TrackMatches matches = matchTracks(previous, newest, R_f2_f1);
+  const TrackMatches matches = matchTracks(previous, newest, R_f2_f1, options.max_epipolar_error_px / kSurelyAligned);
   const CorrespondenceSet& set = matches.set;
   consensus.correspondences = static_cast<int>(set.size());
 

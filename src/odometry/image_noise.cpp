@@ -13,8 +13,40 @@ constexpr double kGain = 0.1;  // share of a frame's measured noise in the runni
 // [px].
 constexpr double kKeptPatchError = 0.8;
 constexpr double kPatchChangePx = 10.0;
+constexpr double kSmallestOffset = 0.02;  // [px]
 
 }  // namespace
+
+// Across the direction in which the point's distance would take up an offset. What an offset has been shrunk by, with
+// the prior that is measured here, is undone, so that a rise is seen at once.
+void ImageNoise::measureOffsets(const BundleAdjustment& bundle, double robust_width, double gain) {
+  const double prior = bundle.offset_sigma * bundle.offset_sigma, noise = bundle.pixel_sigma * bundle.pixel_sigma;
+  double weights = 0.0, squares = 0.0;
+  for (const BundleLandmark& landmark : bundle.landmarks) {
+    for (int camera = 0; camera < CameraRig::kMaxCameras; ++camera) {
+      if (camera == landmark.observations.front().camera) continue;
+      const BundleObservation* newest = nullptr;
+      double views = 0.0;
+      for (const BundleObservation& view : landmark.observations) {
+        if (view.camera != camera) continue;
+        newest = &view;
+        views += 1.0;
+      }
+      Eigen::Vector2d error_px, along;
+      if (!newest || !bundle.error(landmark, *newest, &error_px, &along) || along.norm() < 1e-9) continue;
+      const Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+      const double kept = prior / (prior + noise / views);
+      const double square = std::pow(across.dot(landmark.offsets[camera]) / kept, 2);
+      const double weight = 1.0 / (1.0 + square / (robust_width * robust_width * (prior + noise / views)));
+      weights += weight;
+      squares += weight * (square - noise / views);
+    }
+  }
+  if (weights < 10.0) return;
+  const double measured = std::max(squares / weights, 0.0);
+  offset_sigma_ = std::clamp(std::sqrt((1.0 - gain) * offset_sigma_ * offset_sigma_ + gain * measured), kSmallestOffset,
+                             max_sigma_);
+}
 
 void ImageNoise::measure(const BundleAdjustment& bundle, const BundleSummary& summary, double robust_width) {
   if (summary.degrees_of_freedom < 20.0) return;
@@ -23,6 +55,7 @@ void ImageNoise::measure(const BundleAdjustment& bundle, const BundleSummary& su
   const double measured_sigma = sigma_ * std::sqrt(ratio);
   sigma_ = std::clamp(std::sqrt((1.0 - gain) * sigma_ * sigma_ + gain * measured_sigma * measured_sigma), min_sigma_,
                       max_sigma_);
+  measureOffsets(bundle, robust_width, gain);
 
   const int newest = static_cast<int>(bundle.poses.size()) - 1;
   const double w2 = std::pow(robust_width * measured_sigma, 2);

@@ -46,11 +46,14 @@ RelativeMotion withoutScaleError(const WindowEstimate& estimate) {
 }  // namespace
 
 InertialMotion::InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options,
-                               const ImuBuffer* buffer, bool tilt_from_message)
+                               const ImuBuffer* buffer, bool tilt_from_message, double time_sigma,
+                               const Eigen::Vector3d& first_camera)
     : calibration_(calibration),
       state_(calibration, options),
       buffer_(buffer),
       tilt_from_message_(tilt_from_message),
+      time_sigma_(time_sigma),
+      first_camera_(first_camera),
       complete_(state_) {}
 
 void InertialMotion::takeTiltFromMessage() {
@@ -102,6 +105,7 @@ void InertialMotion::advanceTo(std::int64_t stamp_ns) {
 void InertialMotion::markFrame() {
   if (start_) start_->R_start_frame *= state_.rotationSinceFrame();
   state_.markFrame();
+  rate_at_frame_ = state_.angularVelocity();
   newest_.stamp_ns = state_.stamp();
   if (start_) start_->frames.push_back(newest_);
   if (samples_were_short_) bridged_.push_back(newest_);
@@ -130,6 +134,16 @@ void InertialMotion::catchUp() {
   if (state_.stamp() < now_ns) propagateTo(now_ns);
 }
 
+// Of the rotation since the frame, IMU axes now, by what calibration leaves between camera and IMU: samples that are
+// late move both ends of the rotation, and a turned mounting turns its axis.
+Eigen::Matrix3d InertialMotion::alignmentCovariance() const {
+  const Eigen::Matrix3d R_frame_now = state_.rotationSinceFrame();
+  const Eigen::Vector3d by_time = state_.angularVelocity() - R_frame_now.transpose() * rate_at_frame_;
+  const Eigen::Matrix3d by_mounting = skew(logSO3(R_frame_now));
+  return time_sigma_ * time_sigma_ * by_time * by_time.transpose() +
+         std::pow(calibration_.mounting_sigma, 2) * by_mounting * by_mounting.transpose();
+}
+
 MotionSummary InertialMotion::motionSinceFrame() const {
   Eigen::Isometry3d T_imu1_imu2 = Eigen::Isometry3d::Identity();
   T_imu1_imu2.linear() = state_.rotationSinceFrame();
@@ -137,7 +151,7 @@ MotionSummary InertialMotion::motionSinceFrame() const {
   const Eigen::Matrix3d R_body_imu = calibration_.T_body_imu.linear();
   MotionSummary motion;
   motion.T_a_b = bodyRelativePose(calibration_.T_body_imu, T_imu1_imu2);
-  motion.rotation_covariance = propagated(R_body_imu, state_.rotationSinceFrameCovariance());
+  motion.rotation_covariance = propagated(R_body_imu, state_.rotationSinceFrameCovariance() + alignmentCovariance());
   // The lever arm turns with the body.
   const Eigen::Matrix3d arm = motion.T_a_b.linear() * skew(calibration_.T_body_imu.translation());
   motion.translation_covariance =
@@ -152,12 +166,13 @@ void InertialMotion::correct(const RelativeMotion& vision, bool scale_seen) {
   startFromVertical();
 }
 
-void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
+void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen, bool learn_length) {
   const Eigen::Isometry3d T_imu1_imu2 = imuRelativePose(calibration_.T_body_imu, vision.T_a_b);
   const Eigen::Matrix3d R_imu_body = calibration_.T_body_imu.linear().transpose();
   // From Exp(d) R in the axes of the first frame to R Exp(d) in those of the second.
   const Eigen::Matrix3d to_second = R_imu_body * vision.T_a_b.linear().transpose();
   const Eigen::Matrix3d rotation_covariance = propagated(to_second, vision.covariance.bottomRightCorner<3, 3>()) +
+                                              alignmentCovariance() +
                                               kRotationModelSigma * kRotationModelSigma * Eigen::Matrix3d::Identity();
   state_.correctRelativeRotation(T_imu1_imu2.linear(), rotation_covariance);
   if (!scale_seen) return;
@@ -167,7 +182,14 @@ void InertialMotion::learn(const RelativeMotion& vision, bool scale_seen) {
   const Eigen::Matrix3d displacement_covariance =
       propagated(to_imu, vision.covariance) +
       (kDisplacementModelSigma * kDisplacementModelSigma + share * share) * Eigen::Matrix3d::Identity();
-  state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance);
+  const Eigen::Vector3d camera_moved = vision.T_a_b * first_camera_ - first_camera_;
+  const Eigen::Vector3d by_length = R_imu_body * camera_moved / (1.0 + state_.lengthDisagreement());
+  if (learn_length) {
+    state_.correctDisplacement(T_imu1_imu2.translation(), displacement_covariance, by_length);
+  } else {
+    state_.correctDisplacement(T_imu1_imu2.translation() - state_.lengthDisagreement() * by_length,
+                               displacement_covariance);
+  }
   const double distance = std::min(state_.velocityCounts().squared_mahalanobis, kMostContradiction);
   contradiction_ += (distance - contradiction_) / kContradictionMemory;
 }
@@ -199,12 +221,12 @@ void InertialMotion::reviseStart(const WindowEstimate& estimate) {
   lengthen(&start_->frames);
   if (estimate.scale_state == ScaleState::kNotApplicable) return;
   newest_.measured = withoutScaleError(estimate);
-  start_->scale_sigma = std::max(start_->scale_sigma, std::min(1.0, estimate.scale_sigma));
+  start_->scale_sigma = std::max(start_->scale_sigma, std::min(1.0, estimate.scale_noise));
   if (estimate.scale_state != ScaleState::kObservable || samples_were_short_ ||
-      kBetterScale * estimate.scale_sigma > start_->scale_sigma) {
+      kBetterScale * estimate.scale_noise > start_->scale_sigma) {
     return;
   }
-  start_->scale_sigma = estimate.scale_sigma;
+  start_->scale_sigma = estimate.scale_noise;
   start_->measured = true;
   makeStartAnew(start_->up);
 }
@@ -212,9 +234,13 @@ void InertialMotion::reviseStart(const WindowEstimate& estimate) {
 void InertialMotion::makeStartAnew(const Eigen::Vector3d& up) {
   replayStart(up, 1.0);
   if (!start_->measured) return;
+  // All measured lengths have one error in common, of the images' noise and of the calibration.
+  const double noise = kUnderstatedScale * start_->scale_sigma;
+  const double both = std::hypot(noise, state_.lengthDisagreementSigma());
+  if (both <= 0.0) return;
   InertialMotion longer = *this;
-  longer.replayStart(up, 1.0 + kUnderstatedScale * start_->scale_sigma);
-  state_.addCommonError(longer.state_);
+  longer.replayStart(up, 1.0 + both);
+  state_.addCommonError(longer.state_, noise / both, state_.lengthDisagreementSigma() / both);
 }
 
 void InertialMotion::replayStart(const Eigen::Vector3d& up, double lengthening) {
@@ -222,7 +248,7 @@ void InertialMotion::replayStart(const Eigen::Vector3d& up, double lengthening) 
     if (start_->measured && frame.measured) {
       RelativeMotion longer = *frame.measured;
       longer.T_a_b.translation() *= lengthening;
-      learn(longer, true);
+      learn(longer, true, false);
     } else if (frame.vision) {
       learn(*frame.vision, frame.scale_seen);
     }

@@ -13,19 +13,16 @@ constexpr double kUsualInverseDistance = 0.3;  // of points whose distance is no
 
 }  // namespace
 
-double findInverseDistance(const BundleLandmark& landmark, const std::vector<BundlePose>& poses, double pixel_sigma) {
+double findInverseDistance(const BundleLandmark& landmark, const BundleAdjustment& bundle) {
   double best_cost = std::numeric_limits<double>::infinity(), best = 0.0;
+  BundleLandmark tried = landmark;
   for (int k = 0; k <= 24; ++k) {
     const double inverse_distance = k == 0 ? 0.0 : 0.002 * std::pow(1.35, k - 1);  // 0, then 1/500 m to about 1/0.5 m
     double cost = std::pow(inverse_distance / kUsualInverseDistance, 2);
+    tried.inverse_distance = inverse_distance;
     for (const BundleObservation& observation : landmark.observations) {
-      const BundlePose& pose = poses[observation.pose];
-      const Eigen::Vector3d x =
-          pose.R.transpose() * (landmark.direction + inverse_distance * (landmark.origin - pose.p)) -
-          inverse_distance * observation.center;
-      const double depth = observation.bearing.dot(x);
-      const double error = depth > 1e-6 ? (observation.to_pixel * x).norm() / (depth * pixel_sigma) : 1e3;
-      cost += std::min(error * error, 1e6);
+      const double error = bundle.normalizedError(tried, observation);
+      cost += error < 0.0 ? 1e6 : std::min(error * error, 1e6);
     }
     if (cost < best_cost) {
       best_cost = cost;

@@ -41,7 +41,7 @@ LearnedMotion learnedMotion(const WindowEstimate& estimate, const Eigen::Vector3
     // to frame: such an error does not average out, and while it shrinks it looks like an acceleration.
     const Eigen::Vector3d direction = T.translation() / seen;
     const double across = 0.5 * (covariance.trace() - direction.dot(covariance * direction));
-    const double lasting = std::max(0.0, square(estimate.scale_sigma * seen) - across);
+    const double lasting = std::max(0.0, square(estimate.scale_noise * seen) - across);
     covariance += kLastingFrames * square(kUnderstatedScale) * lasting * direction * direction.transpose();
   }
   return learned;

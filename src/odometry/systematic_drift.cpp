@@ -2,18 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "multicam_egomotion/odometry/systematic_drift.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "multicam_egomotion/geometry/so3.h"
 
 namespace multicam_egomotion {
-namespace {
-constexpr double kScaleSigma = 0.005;  // of the distance at least, as for the displacement between two frames
-}  // namespace
-
 void SystematicDrift::follow(const Eigen::Vector3d& position, double tilt_variance, double scale_sigma) {
-  const double scale_variance = std::pow(std::max(kScaleSigma, scale_sigma), 2);
+  const double scale_variance = scale_sigma * scale_sigma;
   if (scale_variance < scale_variance_) position_scale_ *= scale_variance / scale_variance_;
   scale_variance_ = scale_variance;
   if (started_) {

@@ -18,7 +18,11 @@ std::vector<Eigen::Vector3d> centers(const std::vector<Eigen::Isometry3d>& T_bod
 
 }  // namespace
 
-TrackMatches matchTracks(const PosedFrame& previous, const PosedFrame& newest, const Eigen::Matrix3d& R_f2_f1) {
+TrackMatches matchTracks(const PosedFrame& previous, const PosedFrame& newest, const Eigen::Matrix3d& R_f2_f1,
+                         double max_turn_sigma_px) {
+  const auto loose = [&](int camera) {
+    return !newest.turn_sigma_px.empty() && newest.turn_sigma_px[camera] > max_turn_sigma_px;
+  };
   std::vector<CorrespondenceSet::Entry> entries;
   std::vector<TrackId> tracks;
   std::vector<double> parallaxes;
@@ -29,6 +33,7 @@ TrackMatches matchTracks(const PosedFrame& previous, const PosedFrame& newest, c
     while (begin < first.size() && first[begin].track < now.track) ++begin;
     for (std::size_t i = begin; i < first.size() && first[i].track == now.track; ++i) {
       const FeatureObservation& then = first[i];
+      if (then.camera != now.camera && (loose(then.camera) || loose(now.camera))) continue;
       const Eigen::Isometry3d& T1 = previous.T_body_cam[then.camera];
       const Eigen::Isometry3d& T2 = newest.T_body_cam[now.camera];
       CorrespondenceSet::Entry entry;

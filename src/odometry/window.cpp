@@ -22,6 +22,7 @@ constexpr int kManyKnown = 60;             // landmarks that do without newcomer
 constexpr int kFramesOfNewcomers = 3;
 constexpr double kRestParallax = 0.5;  // between two frames [px]
 constexpr int kFewLandmarks = 20;      // seen on both sides of a motion, below which its prediction counts as well
+constexpr double kFlatScale = 0.05;    // of the relative decrease of the cost at which an adjustment ends
 constexpr int kMinLandmarks = 6;       // tracks that the newest frame shares with older ones, below which it fails
 
 BundlePose toBundle(const Eigen::Isometry3d& T) { return {T.linear(), T.translation()}; }
@@ -35,11 +36,17 @@ Eigen::Isometry3d toIsometry(const BundlePose& pose) {
 
 }  // namespace
 
-Window::Window(const WindowOptions& options)
-    : options_(options), noise_(options.initial_pixel_sigma, options.min_pixel_sigma, options.max_pixel_sigma) {}
+Window::Window(const WindowOptions& options, const RigCalibration& calibration)
+    : options_(options),
+      rig_calibration_(calibration),
+      calibration_(calibration.prior().calibration),
+      calibration_covariance_(calibration.priorCovariance()),
+      length_sigma_(calibration.lengthSigma()),
+      noise_(options.initial_pixel_sigma, options.min_pixel_sigma, options.max_pixel_sigma) {}
 
 void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,
                    const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam) {
+  const BundlePrior known = calibrationAlone();
   landmarks_.clear();
   states_.assign(1, State());
   states_[0].stamp_ns = stamp_ns;
@@ -48,9 +55,22 @@ void Window::start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, 
   start_ = {T_odom_body, covariance};
   prior_.poses = {0};
   prior_.linearization = {states_[0].pose};
-  prior_.H = 1e8 * Matrix6d::Identity();
-  prior_.b = Eigen::VectorXd::Zero(6);
+  const int unknowns = known.calibration.size();
+  prior_.calibration = known.calibration;
+  prior_.H = Eigen::MatrixXd::Zero(6 + unknowns, 6 + unknowns);
+  prior_.H.topLeftCorner<6, 6>() = 1e8 * Matrix6d::Identity();
+  prior_.H.bottomRightCorner(unknowns, unknowns) = known.H;
+  prior_.b = Eigen::VectorXd::Zero(6 + unknowns);
+  prior_.b.tail(unknowns) = known.b;
   addObservations(frame, T_body_cam);
+}
+
+// What is known of the calibration by everything that the window has seen.
+BundlePrior Window::calibrationAlone() const {
+  if (states_.empty() || calibration_.size() == 0) return rig_calibration_.prior();
+  std::vector<TrackId> tracks;
+  BundleAdjustment bundle = makeBundle(&tracks);
+  return marginalizeFirstPoses(static_cast<int>(states_.size()), &bundle, options_.bundle);
 }
 
 void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam) {
@@ -64,6 +84,7 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
     observation.bearing = T.linear() * feature.bearing;
     observation.center = T.translation();
     observation.to_pixel = feature.to_pixel * T.linear().transpose();
+    rig_calibration_.place(feature, T, &observation);
     Landmark& landmark = landmarks_[feature.track];
     if (landmark.observations.empty()) {
       landmark.origin = pose.p + pose.R * observation.center;
@@ -76,11 +97,13 @@ void Window::addObservations(const TrackedFrame& frame, const std::vector<Eigen:
 }
 
 void Window::initializeLandmarks() {
-  std::vector<BundlePose> poses;
-  for (const State& state : states_) poses.push_back(state.pose);
+  BundleAdjustment errors;
+  for (const State& state : states_) errors.poses.push_back(state.pose);
+  errors.calibration = calibration_;
+  errors.pixel_sigma = noise_.pixelSigma();
   for (auto& [track, landmark] : landmarks_) {
     if (landmark.inverse_distance != 0.0 || landmark.observations.size() < 2) continue;
-    landmark.inverse_distance = findInverseDistance(landmark, poses, noise_.pixelSigma());
+    landmark.inverse_distance = findInverseDistance(landmark, errors);
   }
 }
 
@@ -121,7 +144,9 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
     bundle.landmarks.push_back(landmark);
   }
   bundle.prior = prior_;
+  bundle.calibration = calibration_;
   bundle.pixel_sigma = noise_.pixelSigma();
+  bundle.offset_sigma = noise_.offsetSigma();
   return bundle;
 }
 
@@ -130,6 +155,7 @@ BundleAdjustment Window::makeBundle(std::vector<TrackId>* tracks) const {
 BundlePose Window::alignedNewest(const std::vector<Eigen::Isometry3d>& guesses) const {
   const int newest = static_cast<int>(states_.size()) - 1;
   BundleAdjustment bundle;
+  bundle.calibration = calibration_;
   bundle.pixel_sigma = noise_.pixelSigma();
   int views = 0;
   for (const auto& [track, landmark] : landmarks_) {
@@ -138,6 +164,7 @@ BundlePose Window::alignedNewest(const std::vector<Eigen::Isometry3d>& guesses) 
     seen.origin = landmark.origin;
     seen.direction = landmark.direction;
     seen.inverse_distance = landmark.inverse_distance;
+    seen.offsets = landmark.offsets;
     for (const BundleObservation& observation : landmark.observations) {
       if (observation.pose != newest) continue;
       seen.observations.push_back(observation);
@@ -235,6 +262,7 @@ bool Window::seenInNewest(const BundleLandmark& landmark) const {
 double Window::errorInNewest(const BundleLandmark& landmark) const {
   BundleAdjustment bundle;
   bundle.pixel_sigma = noise_.pixelSigma();
+  bundle.calibration = calibration_;
   bundle.poses = {states_.back().pose};
   BundleObservation view = landmark.observations.back();
   view.pose = 0;
@@ -266,17 +294,22 @@ void Window::optimize(WindowEstimate* estimate) {
 bool Window::solve(WindowEstimate* estimate) {
   std::vector<TrackId> tracks;
   BundleAdjustment bundle = makeBundle(&tracks);
-  BundleSummary summary = bundle.solve(options_.bundle);
+  BundleOptions options = options_.bundle;
+  // Along a scale that overlap does not show the cost is so flat that small steps are still far from the end.
+  if (!overlapShowsScale(bundle)) options.relative_decrease *= kFlatScale;
+  BundleSummary summary = bundle.solve(options);
   if (!summary.finite) return false;
   const bool from_the_start = prior_.poses.size() == 1;  // nothing has been marginalized
-  if (from_the_start && !newcomers_wait_) findScale(options_.bundle, &bundle, &summary);
+  if (from_the_start && !newcomers_wait_) findScale(options, &bundle, &summary);
   estimate->lengthening *= lengthening(bundle);
   for (std::size_t i = 0; i < states_.size(); ++i) states_[i].pose = bundle.poses[i];
+  calibration_ = bundle.calibration;
   for (std::size_t l = 0; l < tracks.size(); ++l) {
     BundleLandmark& landmark = landmarks_[tracks[l]];
     landmark.origin = bundle.landmarks[l].origin;
     landmark.direction = bundle.landmarks[l].direction;
     landmark.inverse_distance = bundle.landmarks[l].inverse_distance;
+    landmark.offsets = bundle.landmarks[l].offsets;
   }
   noise_.measure(bundle, summary, options_.bundle.robust_width);
   const int newest = static_cast<int>(states_.size()) - 1;
@@ -284,7 +317,9 @@ bool Window::solve(WindowEstimate* estimate) {
   estimate->T_odom_previous = toIsometry(states_[newest - 1].pose);
   estimate->T_odom_body = toIsometry(states_[newest].pose);
   estimate->pixel_sigma = noise_.pixelSigma();
-  computeMarginals(&bundle, options_.bundle, noise_.whiteShare(), estimate);
+  computeMarginals(&bundle, options_.bundle, noise_.whiteShare(), length_sigma_, rig_calibration_.consideredVariances(),
+                   estimate);
+  calibration_covariance_ = estimate->calibration_covariance;
   // All moves with the start.
   Matrix6d with_start = Matrix6d::Identity();
   with_start.topRightCorner<3, 3>() = -skew(states_[newest].pose.p - start_.T_a_b.translation());
@@ -308,11 +343,15 @@ double Window::lengthening(const BundleAdjustment& bundle) const {
 void Window::classify(WindowEstimate* estimate) {
   BundleAdjustment errors;
   for (const State& state : states_) errors.poses.push_back(state.pose);
+  errors.calibration = calibration_;
   errors.pixel_sigma = noise_.pixelSigma();
   const int newest = static_cast<int>(states_.size()) - 1;
   for (auto it = landmarks_.begin(); it != landmarks_.end();) {
     BundleLandmark& landmark = it->second;
     bool in_newest = false, bad = landmark.inverse_distance * options_.min_distance > 1.0;
+    for (const Eigen::Vector2d& offset : landmark.offsets) {
+      bad = bad || offset.norm() > options_.outlier_sigmas * noise_.offsetSigma();
+    }
     for (const BundleObservation& observation : landmark.observations) {
       in_newest = in_newest || observation.pose == newest;
       if (landmark.observations.size() < 2) continue;
@@ -383,12 +422,13 @@ void Window::marginalizeOldest() {
     old_views.erase(
         std::remove_if(old_views.begin(), old_views.end(), [&](const auto& view) { return view.pose == newest; }),
         old_views.end());
+    landmark.offsets = BundleLandmark::noOffsets();
     auto& kept = landmark.observations;
     kept.erase(std::remove_if(kept.begin(), kept.end(), [&](const auto& view) { return view.pose != newest; }),
                kept.end());
     if (old_views.back().pose > 0) bundle.landmarks.push_back(leaving);
   }
-  prior_ = marginalizeFirstPose(&bundle, options_.bundle);
+  prior_ = marginalizeFirstPoses(1, &bundle, options_.bundle);
   dropState(0);
 }
 
@@ -404,6 +444,37 @@ void Window::rotateAbout(const Eigen::Vector3d& pivot, const Eigen::Matrix3d& R)
     landmark.origin = pivot + R * (landmark.origin - pivot);
     landmark.direction = R * landmark.direction;
   }
+}
+
+void Window::scale(double factor, const Eigen::Vector3d& first_camera) {
+  // Everything is scaled about the first camera of the newest state, and then moved so that its body stays.
+  const BundlePose newest = states_.back().pose;
+  const Eigen::Vector3d fixed = newest.p + newest.R * first_camera;
+  const auto scaled = [&](const Eigen::Vector3d& point) { return Eigen::Vector3d(fixed + factor * (point - fixed)); };
+  const auto move = [&](BundlePose* pose) {
+    const Eigen::Vector3d arm = pose->R * first_camera;
+    pose->p = scaled(pose->p + arm) - arm;
+  };
+  for (State& state : states_) move(&state.pose);
+  for (BundlePose& pose : prior_.linearization) move(&pose);
+  BundlePose start{start_.T_a_b.linear(), start_.T_a_b.translation()};
+  move(&start);
+  start_.T_a_b.translation() = start.p;
+  for (auto& [track, landmark] : landmarks_) {
+    landmark.origin = scaled(landmark.origin);
+    landmark.inverse_distance /= factor;
+    for (BundleObservation& view : landmark.observations) {
+      view.center = first_camera + factor * (view.center - first_camera);
+    }
+  }
+  // The prior's differences d become T d.
+  Matrix6d T_inverse = Matrix6d::Identity();
+  T_inverse.topLeftCorner<3, 3>() /= factor;
+  T_inverse.topRightCorner<3, 3>() = (factor - 1.0) / factor * skew(first_camera);
+  Eigen::MatrixXd all_inverse = Eigen::MatrixXd::Identity(prior_.b.size(), prior_.b.size());
+  for (std::size_t i = 0; i < prior_.poses.size(); ++i) all_inverse.block<6, 6>(6 * i, 6 * i) = T_inverse;
+  prior_.H = all_inverse.transpose() * prior_.H * all_inverse;
+  prior_.b = all_inverse.transpose() * prior_.b;
 }
 
 // To better than 20 %, by the parallax that the views have among themselves, against the image noise.

@@ -12,16 +12,6 @@ constexpr int kManyOverlaps = 20;  // landmarks seen by two cameras at once, who
 constexpr int kMaxHops = 6;
 constexpr double kBetter = 1.0;  // cost by which another scale has to be better
 
-bool overlapShowsScale(const BundleAdjustment& bundle) {
-  const auto seenByTwo = [](const BundleLandmark& landmark) {
-    const auto& views = landmark.observations;
-    return std::adjacent_find(views.begin(), views.end(), [](const auto& a, const auto& b) {
-             return a.pose == b.pose && a.camera != b.camera;
-           }) != views.end();
-  };
-  return std::count_if(bundle.landmarks.begin(), bundle.landmarks.end(), seenByTwo) >= kManyOverlaps;
-}
-
 BundleAdjustment scaledAboutFirstPose(const BundleAdjustment& bundle, double factor) {
   BundleAdjustment scaled = bundle;
   const Eigen::Vector3d& first = bundle.poses.front().p;
@@ -35,6 +25,16 @@ BundleAdjustment scaledAboutFirstPose(const BundleAdjustment& bundle, double fac
 }
 
 }  // namespace
+
+bool overlapShowsScale(const BundleAdjustment& bundle) {
+  const auto seenByTwo = [](const BundleLandmark& landmark) {
+    const auto& views = landmark.observations;
+    return std::adjacent_find(views.begin(), views.end(), [](const auto& a, const auto& b) {
+             return a.pose == b.pose && a.camera != b.camera;
+           }) != views.end();
+  };
+  return std::count_if(bundle.landmarks.begin(), bundle.landmarks.end(), seenByTwo) >= kManyOverlaps;
+}
 
 void findScale(const BundleOptions& options, BundleAdjustment* bundle, BundleSummary* summary) {
   if (overlapShowsScale(*bundle)) return;

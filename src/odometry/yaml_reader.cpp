@@ -140,6 +140,17 @@ double YamlReader::positiveNumber(const std::string& key, double fallback) const
   return has(key) ? at(key).positiveNumber() : fallback;
 }
 
+double YamlReader::numberUpTo(double most, const std::string& key, double fallback) const {
+  if (!has(key)) return fallback;
+  const double value = at(key).number();
+  if (value < 0 || value > most) {
+    std::ostringstream expected;
+    expected << "a number from 0 to " << most;
+    at(key).fail(describe(at(key).node_), expected.str());
+  }
+  return value;
+}
+
 void YamlReader::allowOnly(const std::vector<std::string>& keys) const {
   if (!node_.IsMap()) fail(describe(node_), "a map");
   for (const auto& entry : node_) {

@@ -34,6 +34,8 @@ class YamlReader {
   std::string text(const std::string& key, const std::string& fallback) const;
   double number(const std::string& key, double fallback) const;
   double positiveNumber(const std::string& key, double fallback) const;
+  /// A number from 0 to `most`.
+  double numberUpTo(double most, const std::string& key, double fallback) const;
 
   /// Refuses a key that is none of these: a misspelt option must not be ignored.
   void allowOnly(const std::vector<std::string>& keys) const;

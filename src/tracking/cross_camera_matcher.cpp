@@ -94,12 +94,11 @@ bool CrossCameraMatcher::refine(const Pair& pair, const ImagePoint& point, doubl
 
   match->inverse_distance = std::max(0.0, inverseDistance(point, match->point, pair.T_to_from));
   if (match->inverse_distance * options_.min_distance_m > 1.0) return false;
-  match->contradicts_calibration =
-      std::abs(epipolarError(point, match->point, pair.T_to_from)) > options_.max_epipolar_error_px;
-  if (match->contradicts_calibration) return true;
+  const double max_error_px = options_.max_epipolar_error_px + pair.epipolar_slack_px;
+  if (std::abs(epipolarError(point, match->point, pair.T_to_from)) > max_error_px) return false;
   // Beyond infinity: on the epipolar line, but not on the half that points project to.
   if (!warpAt(pair, point, match->inverse_distance, &warp)) return false;
-  return (warp.pixel - match->point.pixel).norm() < 2.0 * options_.max_epipolar_error_px;
+  return (warp.pixel - match->point.pixel).norm() < 2.0 * max_error_px;
 }
 
 bool CrossCameraMatcher::reverses(const Pair& pair, const ImagePoint& point, const CrossCameraMatch& match) const {
@@ -178,19 +177,14 @@ void CrossCameraMatcher::collectCandidates(const Pair& pair, const ImagePoint& p
 std::optional<CrossCameraMatch> CrossCameraMatcher::search(const Pair& pair, const ImagePoint& point) const {
   std::vector<Candidate> candidates;
   collectCandidates(pair, point, &candidates);
-  std::optional<CrossCameraMatch> best, beside;
-  double best_correlation = -1, second_correlation = -1, beside_correlation = -1;
+  std::optional<CrossCameraMatch> best;
+  double best_correlation = -1, second_correlation = -1;
   for (const Candidate& candidate : candidates) {
     CrossCameraMatch match;
     double correlation = -1;
     const bool found = refine(pair, point, candidate.inverse_distance, options_.search_level, WarpModel::kTranslation,
                               &match, &correlation);
     if (!found) continue;
-    if (match.contradicts_calibration) {
-      if (correlation > beside_correlation) beside = match;
-      beside_correlation = std::max(beside_correlation, correlation);
-      continue;
-    }
     if (best && (match.point.pixel - best->point.pixel).norm() < kSameMatchPx) continue;
     if (correlation > best_correlation) {
       second_correlation = best_correlation;
@@ -201,22 +195,18 @@ std::optional<CrossCameraMatch> CrossCameraMatcher::search(const Pair& pair, con
     }
   }
   if (best && best_correlation - second_correlation < options_.min_distinction) return std::nullopt;
-  if (!best) best = beside;
   return best && reverses(pair, point, *best) ? best : std::nullopt;
 }
 
 std::optional<CrossCameraMatch> CrossCameraMatcher::rematch(const Pair& pair, const ImagePoint& point,
                                                             double inverse_distance, WarpModel model) const {
   // The finest level alone mostly suffices.
-  std::optional<CrossCameraMatch> beside;
   for (const int first_level : {0, std::min(1, options_.search_level)}) {
     CrossCameraMatch match;
     double correlation = -1;
-    if (!refine(pair, point, inverse_distance, first_level, model, &match, &correlation)) continue;
-    if (!match.contradicts_calibration) return match;
-    beside = match;
+    if (refine(pair, point, inverse_distance, first_level, model, &match, &correlation)) return match;
   }
-  return beside;
+  return std::nullopt;
 }
 
 }  // namespace multicam_egomotion

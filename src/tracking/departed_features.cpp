@@ -65,11 +65,15 @@ bool DepartedFeatures::findIn(int camera, const Departed& departed, const Tracke
   const Eigen::Vector3d position = T_cam_body * point.position;
   Eigen::Vector2d pixel;
   if (!rig_.camera(camera).model.project(position, &pixel) || !regions_.contain(camera, pixel)) return false;
-  const CrossCameraMatcher::Pair pair{departed.camera, camera, departed.image, frames.current[camera].images(),
-                                      T_cam_body * departed.T_body_cam};
+  const CrossCameraMatcher::Pair pair{departed.camera,
+                                      camera,
+                                      departed.image,
+                                      frames.current[camera].images(),
+                                      T_cam_body * departed.T_body_cam,
+                                      frames.slackBetween(departed.camera, camera)};
   const double distance = (point.position - departed.T_body_cam.translation()).norm();
   const auto match = matcher_.rematch(pair, departed.point, 1.0 / distance, WarpModel::kAffine);
-  if (!match || match->contradicts_calibration || !regions_.contain(camera, match->point.pixel)) return false;
+  if (!match || !regions_.contain(camera, match->point.pixel)) return false;
   feature->id = point.track;
   feature->owner = camera;
   feature->inverse_distance = 1.0 / position.norm();

@@ -34,7 +34,6 @@ class FeatureTracker::Impl {
         regions_(rig_, options.patch_size_px / 2 + 1),
         temporal_(rig_, regions_, options),
         matcher_(rig_, crossCameraOptions(options)),
-        calibration_check_(rig_),
         departed_(rig_, regions_, matcher_) {
     check(options);
     makeDetectors();
@@ -42,6 +41,8 @@ class FeatureTracker::Impl {
   }
 
   void setMask(int camera, const cv::Mat& mask) { regions_.setMask(camera, mask); }
+
+  void setEpipolarSlack(const std::vector<double>& slack_px) { images_.epipolar_slack_px = slack_px; }
 
   void setDetection(const FeatureTrackerOptions& options) {
     FeatureTrackerOptions changed = options_;
@@ -80,7 +81,6 @@ class FeatureTracker::Impl {
     dropDead();
     newborn_ = next_id_;
     detect();
-    checkCalibration();
     return output(frames.stamp_ns);
   }
 
@@ -120,7 +120,6 @@ class FeatureTracker::Impl {
   }
 
   const FeatureTrackerCounters& counters() const { return counters_; }
-  const CalibrationCheck& calibrationCheck() const { return calibration_check_; }
 
  private:
   static bool beforeId(const Feature& feature, TrackId id) { return feature.id < id; }
@@ -216,7 +215,6 @@ class FeatureTracker::Impl {
       for (int camera = 0; camera < rig_.size(); ++camera) {
         if (camera == feature.owner) continue;
         const bool was_seen = std::exchange(feature.seen[camera], false);
-        feature.beside[camera] = false;
         matchInto(camera, was_seen, &feature, counters);
         if (was_seen && !feature.seen[camera]) ++counters->rejected_epipolar;
       }
@@ -229,9 +227,12 @@ class FeatureTracker::Impl {
         std::find(overlapping.begin(), overlapping.end(), camera) == overlapping.end()) {
       return;
     }
-    const CrossCameraMatcher::Pair pair{feature->owner, camera, images_.current[feature->owner].images(),
+    const CrossCameraMatcher::Pair pair{feature->owner,
+                                        camera,
+                                        images_.current[feature->owner].images(),
                                         images_.current[camera].images(),
-                                        images_.T_body_cam[camera].inverse() * images_.T_body_cam[feature->owner]};
+                                        images_.T_body_cam[camera].inverse() * images_.T_body_cam[feature->owner],
+                                        images_.slackBetween(camera, feature->owner)};
     const ImagePoint& point = feature->points[feature->owner];
     std::optional<CrossCameraMatch> match;
     if (was_seen && feature->inverse_distance >= 0) {
@@ -241,23 +242,9 @@ class FeatureTracker::Impl {
     }
     if (!match || !regions_.contain(camera, match->point.pixel)) return;
     feature->points[camera] = match->point;
-    feature->beside[camera] = match->contradicts_calibration;
-    if (match->contradicts_calibration) return;
     feature->seen[camera] = true;
     feature->inverse_distance = match->inverse_distance;
     ++counters->cross_camera_matches;
-  }
-
-  void checkCalibration() {
-    for (const Feature& feature : features_) {
-      const int owner = feature.owner;
-      for (const int camera : rig_.overlappingCameras(owner)) {
-        if (!feature.seen[camera] && !feature.beside[camera]) continue;
-        calibration_check_.add(owner, feature.points[owner], camera, feature.points[camera],
-                               images_.T_body_cam[camera].inverse() * images_.T_body_cam[owner]);
-      }
-    }
-    calibration_check_.endFrame();
   }
 
   void dropDead() {
@@ -319,7 +306,6 @@ class FeatureTracker::Impl {
   FeatureRegions regions_;
   TemporalTracker temporal_;
   CrossCameraMatcher matcher_;
-  CalibrationCheck calibration_check_;
   DepartedFeatures departed_;
   std::vector<CornerDetector> detectors_;
 
@@ -339,6 +325,7 @@ FeatureTracker& FeatureTracker::operator=(FeatureTracker&&) noexcept = default;
 
 void FeatureTracker::setMask(int camera, const cv::Mat& mask) { impl_->setMask(camera, mask); }
 void FeatureTracker::setDetection(const FeatureTrackerOptions& options) { impl_->setDetection(options); }
+void FeatureTracker::setEpipolarSlack(const std::vector<double>& slack_px) { impl_->setEpipolarSlack(slack_px); }
 TrackedFrame FeatureTracker::track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
                                    const std::vector<Eigen::Isometry3d>& T_body_cam) {
   return impl_->track(frames, T_prev_cur, T_body_cam);
@@ -350,6 +337,5 @@ void FeatureTracker::markKeyframe() { impl_->markKeyframe(); }
 void FeatureTracker::remove(const std::vector<TrackId>& tracks) { impl_->remove(tracks); }
 void FeatureTracker::reset() { impl_->reset(); }
 const FeatureTrackerCounters& FeatureTracker::counters() const { return impl_->counters(); }
-const CalibrationCheck& FeatureTracker::calibrationCheck() const { return impl_->calibrationCheck(); }
 
 }  // namespace multicam_egomotion

@@ -17,8 +17,7 @@ Eigen::Matrix<double, 2, 3> bearingToPixel(const ImagePoint& point) {
   return (J.transpose() * J).inverse() * J.transpose();
 }
 
-double epipolarError(const ImagePoint& a, const ImagePoint& b, const Eigen::Isometry3d& T_b_a,
-                     Eigen::Vector3d* by_turn) {
+double epipolarError(const ImagePoint& a, const ImagePoint& b, const Eigen::Isometry3d& T_b_a) {
   const Eigen::Vector3d t = T_b_a.translation();
   const Eigen::Vector3d turned_a = T_b_a.linear() * a.bearing;
   const Eigen::Vector3d normal_b = t.cross(turned_a);
@@ -27,7 +26,6 @@ double epipolarError(const ImagePoint& a, const ImagePoint& b, const Eigen::Isom
   const double squared_gradient = (b.bearing_derivative.transpose() * normal_b).squaredNorm() +
                                   (a.bearing_derivative.transpose() * normal_a).squaredNorm();
   const double to_pixel = squared_gradient > 0 ? 1.0 / std::sqrt(squared_gradient) : 0.0;
-  if (by_turn) *by_turn = to_pixel * turned_a.cross(across_b);
   return to_pixel * b.bearing.dot(normal_b);
 }
 

@@ -76,8 +76,9 @@ inline BundleScene makeBundleScene(int poses, int points, const std::vector<Eige
     landmark.direction = offset.normalized();
     landmark.inverse_distance = 1.0 / offset.norm();
     for (int i = 0; i < poses; ++i) {
-      for (const Eigen::Vector3d& center : centers) {
-        landmark.observations.push_back(observe(scene.poses[i], i, center, point, sigma_px, &noise));
+      for (std::size_t k = 0; k < centers.size(); ++k) {
+        landmark.observations.push_back(observe(scene.poses[i], i, centers[k], point, sigma_px, &noise));
+        landmark.observations.back().camera = static_cast<int>(k);
       }
     }
     scene.points.push_back(point);
@@ -112,15 +113,96 @@ inline void addMotionFactors(BundleScene* scene, double rotation_sigma, double t
 
 inline void setPrior(BundleScene* scene, const std::vector<int>& poses, const Eigen::MatrixXd& H,
                      const Eigen::VectorXd& b) {
-  PosePrior& prior = scene->bundle.prior;
+  BundlePrior& prior = scene->bundle.prior;
   prior.poses = poses;
   for (int pose : poses) prior.linearization.push_back(scene->poses[pose]);
   prior.H = H;
   prior.b = b;
 }
 
+/// What the calibration needs to know of a view. Its camera looks along +x and has images of 640 x 480 pixels; the
+/// epipolar lines are those of a camera at `reference` (body axes).
+inline void placeInImage(const Eigen::Vector3d& reference, BundleObservation* view) {
+  view->from_center = -view->to_pixel * Eigen::Vector3d::UnitX() / view->bearing.x();
+  const Eigen::Vector2d along = view->to_pixel * (reference - view->center);
+  if (along.norm() < 1e-9) return;
+  view->across = Eigen::Vector2d(-along.y(), along.x()).normalized();
+  view->image_position = {view->from_center.dot(along.normalized()) / 320.0,
+                          view->from_center.dot(view->across) / 240.0};
+}
+
+/// Three cameras: the first has a focal length alone, the second a rotation and a field, the third a rotation.
+inline const std::vector<Eigen::Vector3d>& threeCenters() {
+  static const std::vector<Eigen::Vector3d> centers = {{0.1, 0.1, 0.0}, {0.1, -0.1, 0.02}, {0.05, 0.0, 0.15}};
+  return centers;
+}
+
+inline BundleCalibration threeCameraCalibration(bool estimate = true) {
+  std::vector<CameraCorrection> cameras(3);
+  cameras[1].turns = cameras[2].turns = true;
+  cameras[1].has_field = true;
+  return BundleCalibration(cameras, estimate);
+}
+
+/// Random values of a calibration's parameters: rotations [rad], focal lengths and, ten times as large, fields [px].
+inline Eigen::VectorXd calibrationNoise(const BundleCalibration& calibration, double sigma, Noise* noise) {
+  Eigen::VectorXd d(calibration.size());
+  for (int i = 0; i < d.size(); ++i) d[i] = noise->gaussian(sigma);
+  for (int k = 0; calibration.correction(k); ++k) {
+    const CameraCorrection& camera = *calibration.correction(k);
+    if (camera.has_field) d.segment<kFieldTerms>(camera.focalColumn() + 1) *= 10.0;
+  }
+  return d;
+}
+
+/// Error of a view [px], written anew from its definition.
+inline Eigen::Vector2d errorOf(const BundleAdjustment& bundle, const BundleLandmark& landmark,
+                               const BundleObservation& view) {
+  const BundlePose& pose = bundle.poses[view.pose];
+  const Eigen::Vector3d point = landmark.origin + landmark.direction / landmark.inverse_distance;
+  Eigen::Vector3d x = pose.R.transpose() * (point - pose.p) - view.center;
+  Eigen::Vector2d static_error = Eigen::Vector2d::Zero();
+  if (const CameraCorrection* correction = bundle.calibration.correction(view.camera)) {
+    x = correction->R.transpose() * x;
+    const double s = view.image_position.x(), t = view.image_position.y();
+    const double terms[] = {s * s, s * t, t * t, s * s * s, s * s * t, s * t * t, t * t * t};
+    static_error = correction->focal_length * view.from_center;
+    for (int i = 0; i < kFieldTerms; ++i) static_error += correction->field[i] * terms[i] * view.across;
+  }
+  return view.to_pixel * x / view.bearing.dot(x) + static_error + landmark.offsets[view.camera];
+}
+
+/// Turns the view's bearing until its error is nothing: as the image shows the landmark with what the bundle holds.
+inline void makeExact(const BundleAdjustment& bundle, const BundleLandmark& landmark, const Eigen::Vector3d& reference,
+                      BundleObservation* view) {
+  for (int i = 0; i < 30; ++i) {
+    placeInImage(reference, view);
+    const Eigen::Vector2d error = errorOf(bundle, landmark, *view);
+    view->bearing = (view->bearing + view->to_pixel.transpose() * error / (400.0 * 400.0)).normalized();
+    view->to_pixel.row(0) = 400.0 * Eigen::Vector3d::UnitZ().cross(view->bearing).normalized().transpose();
+    view->to_pixel.row(1) = view->bearing.cross(Eigen::Vector3d(view->to_pixel.row(0))).transpose();
+  }
+  placeInImage(reference, view);
+}
+
+/// Local difference of the prior's poses and calibration, written anew.
+inline Eigen::VectorXd differenceFrom(const BundlePrior& prior, const BundleAdjustment& bundle) {
+  std::vector<double> d;
+  const auto append = [&](const auto& values) { d.insert(d.end(), values.data(), values.data() + values.size()); };
+  for (std::size_t i = 0; i < prior.poses.size(); ++i) {
+    append(localDifference(prior.linearization[i], bundle.poses[prior.poses[i]]));
+  }
+  for (int k = 0; prior.calibration.correction(k); ++k) {
+    const CameraCorrection &then = *prior.calibration.correction(k), &now = *bundle.calibration.correction(k);
+    if (then.turns) append(logSO3(then.R.transpose() * now.R));
+    d.push_back(now.focal_length - then.focal_length);
+    if (then.has_field) append(FieldVector(now.field - then.field));
+  }
+  return Eigen::Map<Eigen::VectorXd>(d.data(), static_cast<int>(d.size()));
+}
+
 /// The cost that BundleAdjustment minimizes, written anew from its definition: Cauchy loss of every pixel error, motion
-/// factors, priors of poses and inverse distances.
+/// factors, priors of poses, calibration, inverse distances and offsets.
 inline double costOf(const BundleAdjustment& bundle, const BundleOptions& options) {
   const double w2 = options.robust_width * options.robust_width;
   double sum = 0.0;
@@ -128,11 +210,12 @@ inline double costOf(const BundleAdjustment& bundle, const BundleOptions& option
     const double distance_error = landmark.inverse_distance / options.inverse_distance_sigma;
     sum += 0.5 * distance_error * distance_error;
     for (const BundleObservation& view : landmark.observations) {
-      const BundlePose& pose = bundle.poses[view.pose];
-      const Eigen::Vector3d point = landmark.origin + landmark.direction / landmark.inverse_distance;
-      const Eigen::Vector3d x = pose.R.transpose() * (point - pose.p) - view.center;
-      const Eigen::Vector2d error = view.to_pixel * x / view.bearing.dot(x) / bundle.pixel_sigma;
-      sum += 0.5 * w2 * std::log1p(error.squaredNorm() / w2);
+      const double error = errorOf(bundle, landmark, view).norm() / bundle.pixel_sigma;
+      sum += 0.5 * w2 * std::log1p(error * error / w2);
+    }
+    if (bundle.offset_sigma <= 0.0) continue;
+    for (const Eigen::Vector2d& offset : landmark.offsets) {
+      sum += 0.5 * (offset / bundle.offset_sigma).squaredNorm();
     }
   }
   for (const MotionFactor& factor : bundle.factors) {
@@ -141,16 +224,9 @@ inline double costOf(const BundleAdjustment& bundle, const BundleOptions& option
     const Eigen::Vector3d t = a.R.transpose() * (b.p - a.p) - factor.p_b_a;
     sum += 0.5 * r.dot(factor.rotation_information * r) + 0.5 * t.dot(factor.translation_information * t);
   }
-  for (std::size_t i = 0; i < bundle.prior.poses.size(); ++i) {
-    const auto difference = [&](std::size_t k) {
-      return localDifference(bundle.prior.linearization[k], bundle.poses[bundle.prior.poses[k]]);
-    };
-    sum -= bundle.prior.b.segment<6>(6 * i).dot(difference(i));
-    for (std::size_t j = 0; j < bundle.prior.poses.size(); ++j) {
-      sum += 0.5 * difference(i).dot(bundle.prior.H.block<6, 6>(6 * i, 6 * j) * difference(j));
-    }
-  }
-  return sum;
+  if (bundle.prior.empty()) return sum;
+  const Eigen::VectorXd d = differenceFrom(bundle.prior, bundle);
+  return sum + 0.5 * d.dot(bundle.prior.H * d) - bundle.prior.b.dot(d);
 }
 
 }  // namespace multicam_egomotion

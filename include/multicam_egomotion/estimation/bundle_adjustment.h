@@ -3,7 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
+
+#include "multicam_egomotion/estimation/bundle_calibration.h"
+#include "multicam_egomotion/geometry/camera_rig.h"
 
 namespace multicam_egomotion {
 
@@ -21,6 +25,9 @@ struct BundleObservation {
   Eigen::Vector3d center;                ///< camera centre in the body frame at the reference stamp [m]
   Eigen::Matrix<double, 2, 3> to_pixel;  ///< pixel error of a predicted point x (body axes, from the centre) is
                                          ///< to_pixel * x / (bearing · x) [px]
+  Eigen::Vector2d across = Eigen::Vector2d::Zero();  ///< unit vector across the epipolar lines [px]; 0: no field here
+  Eigen::Vector2d image_position = Eigen::Vector2d::Zero();  ///< for fieldTerms()
+  Eigen::Vector2d from_center = Eigen::Vector2d::Zero();     ///< pixel from the principal point [px]
 };
 
 /// Point in inverse-distance form about a constant origin: X = origin + direction / inverse_distance. Far points and
@@ -30,6 +37,11 @@ struct BundleLandmark {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit, odom axes
   double inverse_distance = 0.0;                         ///< [1/m]
   std::vector<BundleObservation> observations;
+  /// Error that all views of one camera have in common, against those of the camera of the first view [px]: the patches
+  /// of two cameras do not look alike. By camera.
+  std::array<Eigen::Vector2d, CameraRig::kMaxCameras> offsets = noOffsets();
+
+  static std::array<Eigen::Vector2d, CameraRig::kMaxCameras> noOffsets();
 };
 
 /// What is known of the motion between two poses without vision: gyroscope rotation and, where vision sees no scale,
@@ -42,18 +54,23 @@ struct MotionFactor {
   Eigen::Matrix3d translation_information = Eigen::Matrix3d::Zero();  ///< [1/m^2], zero when not used
 };
 
-/// Gaussian prior on some poses, linearized where it was made: 1/2 d^T H d - b^T d with d the local difference.
-struct PosePrior {
+/// Gaussian prior on some poses and the calibration, linearized where it was made: 1/2 d^T H d - b^T d with d the local
+/// difference of the poses and then the calibration.
+struct BundlePrior {
   std::vector<int> poses;
   std::vector<BundlePose> linearization;
-  Eigen::MatrixXd H;  ///< 6n x 6n
+  BundleCalibration calibration;
+  Eigen::MatrixXd H;  ///< square of the size of d
   Eigen::VectorXd b;
+
+  bool empty() const { return H.size() == 0; }
+  Eigen::VectorXd difference(const std::vector<BundlePose>& all_poses, const BundleCalibration& now) const;
 };
 
 struct BundleOptions {
   bool fix_landmarks = false;  ///< estimate the poses against the landmarks as they are
   int max_iterations = 30;
-  double relative_decrease = 1e-4;  ///< stop when the cost falls by less than this share
+  double relative_decrease = 2e-3;  ///< stop when the cost falls by less than this share
   /// Points are not much nearer than this: sigma of a prior on the inverse distance about 0 [1/m]. It keeps points that
   /// are seen without parallax from taking any distance, and says next to nothing of the scale.
   double inverse_distance_sigma = 3.0;
@@ -68,26 +85,40 @@ struct BundleSummary {
   bool finite = true;
 };
 
-/// Levenberg-Marquardt over body poses and landmarks with the landmarks eliminated (Schur complement). Everything is
-/// dense in the few poses of a window; no heap use beyond buffers that are kept.
+/// Levenberg-Marquardt over body poses, calibration and landmarks with the landmarks eliminated (Schur complement).
+/// The unknowns are the poses, six each, and after them the calibration; a considered part of that has its columns in
+/// the normal equations, but is not moved. Everything is dense in the few poses of a
+/// window; no heap use beyond buffers that are kept.
 class BundleAdjustment {
  public:
   std::vector<BundlePose> poses;
+  BundleCalibration calibration;
   std::vector<BundleLandmark> landmarks;
   std::vector<MotionFactor> factors;
-  PosePrior prior;           ///< empty: the first pose is held fixed, unless the landmarks are
-  double pixel_sigma = 0.5;  ///< image noise [px]
+  BundlePrior prior;          ///< empty: the first pose is held fixed, unless the landmarks are
+  double pixel_sigma = 0.5;   ///< image noise [px]
+  double offset_sigma = 0.0;  ///< of the landmarks' offsets [px]; 0: there are none
 
   BundleSummary solve(const BundleOptions& options);
 
-  /// Normal equations of the poses at the present values (gradient form: H d = b), landmarks eliminated.
-  /// `vision`: observations only; `rest`: factors and prior. Both 6n x 6n. Landmarks whose `use` is false are left out.
+  /// Normal equations at the present values (gradient form: H d = b), landmarks eliminated.
+  /// `vision`: observations only; `rest`: factors and prior.
   void linearize(Eigen::MatrixXd* vision_H, Eigen::VectorXd* vision_b, Eigen::MatrixXd* rest_H, Eigen::VectorXd* rest_b,
-                 const BundleOptions& options, const std::vector<char>* use = nullptr);
+                 const BundleOptions& options);
+
+  /// Poses and calibration, what is considered included.
+  int size() const { return firstOfCalibration() + calibration.size(); }
+  int firstOfCalibration() const { return 6 * static_cast<int>(poses.size()); }
+  /// Makes what is considered stay as it is in the solution of H d = b.
+  void holdConsidered(Eigen::MatrixXd* H, Eigen::VectorXd* b) const;
 
   /// Factor by which a Newton step of the last linearization is longer than H^-1 b: reweighting takes the Cauchy loss
   /// for more curved than it is.
   double newtonGain() const { return weight_square_sum_ > 0.0 ? weight_sum_ / weight_square_sum_ : 1.0; }
+
+  /// Covariance of a landmark's offset in a further camera, as its prior and the last linearization know it with the
+  /// poses as they are [px^2]; the prior's where the landmark was not part of it.
+  Eigen::Matrix2d offsetCovariance(std::size_t landmark, int camera) const;
 
   /// Pixel error of an observation [px]; false when the point is behind the camera.
   /// `by_inverse_distance`: its derivative by the landmark's inverse distance [px m], optional.
@@ -97,24 +128,33 @@ class BundleAdjustment {
   double normalizedError(const BundleLandmark& landmark, const BundleObservation& observation) const;
 
  private:
-  struct LandmarkBlock {
-    Eigen::Matrix3d H_inverse;
-    Eigen::Vector3d b;
-    int first_coupling = 0, coupling_count = 0;
+  /// Rows of one pose or of one camera's calibration in the unknowns, and where their part of a landmark stands.
+  struct Segment {
+    int column, rows, at;
   };
-  struct Coupling {
-    int pose;
-    Eigen::Matrix<double, 6, 3> W;
+  /// What is left of an eliminated landmark: L y of its normal equations H_l = L L^T, b_l = L y, and for each segment
+  /// A = W L^-T; all in values_.
+  struct LandmarkBlock {
+    int depth = 0;  ///< its unknowns: 3, and 2 for each further camera's offset
+    int first_segment = 0, segment_count = 0;
+    int L = 0, y = 0;
   };
 
-  void accumulateVision(double lambda, const BundleOptions& options, const std::vector<char>* use, Eigen::MatrixXd* H,
-                        Eigen::VectorXd* b);
+  int furtherCameras(const BundleLandmark& landmark, std::array<int, CameraRig::kMaxCameras>* offset_of) const;
+  template <int Depth>
+  void accumulateLandmark(const BundleLandmark& landmark, const int* offset_of, double lambda,
+                          const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b, LandmarkBlock* block);
+  void accumulateAgainstFixed(const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b);
+  void accumulateVision(double lambda, const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b);
   void accumulateRest(Eigen::MatrixXd* H, Eigen::VectorXd* b) const;
+  void moveLandmarks(const Eigen::VectorXd& step);
   double cost(const BundleOptions& options) const;
 
   std::vector<LandmarkBlock> blocks_;
-  std::vector<Coupling> couplings_;
+  std::vector<Segment> segments_;
+  std::vector<double> values_;
   double weight_sum_ = 0.0, weight_square_sum_ = 0.0, weighted_squares_ = 0.0;
+  double landmark_unknowns_ = 0.0;  ///< offsets count by how far the observations and not their prior determine them
 };
 
 /// Local difference d with a ⊞ d = b: (dp, dtheta).

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,12 @@ struct InertialStateOptions {
   double gyroscope_scale_sigma = 0.006;
   double accelerometer_scale_sigma = 0.01;
   double scale_error_time_s = 1.0;
+  /// Of vision's lengths by what its calibration does not know, the same for all [1]. The accelerometer tells no more
+  /// of it than its own scale is known: to the next line, as data sheets of MEMS sensors have it, and to what straight
+  /// lines between samples leave of motion of `motion_bandwidth_hz` [Hz].
+  double length_sigma = 0.0;
+  double accelerometer_lasting_scale_sigma = 0.005;
+  double motion_bandwidth_hz = 2.0;
   /// Unknown sustained acceleration of the platform beyond what the samples show, per axis [m/s^2].
   double motion_acceleration_sigma = 0.5;   ///< in motion
   double still_acceleration_sigma = 0.1;    ///< when the samples are as quiet as at rest
@@ -94,8 +101,10 @@ class InertialState {
   /// (IMU axes now) [rad^2]. Answers whether it was accepted; so do the others.
   bool correctRelativeRotation(const Eigen::Matrix3d& R_1_2, const Eigen::Matrix3d& covariance);
   /// Displacement of the IMU between frame and now, in IMU axes of the frame [m]. Prefer it to correctVelocity for
-  /// motion between images, which is a mean velocity, not the one now.
-  bool correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance);
+  /// motion between images, which is a mean velocity, not the one now. `by_length`: the part of it that is longer by
+  /// lengthError() than it truly is [m].
+  bool correctDisplacement(const Eigen::Vector3d& p_1_2, const Eigen::Matrix3d& covariance,
+                           const Eigen::Vector3d& by_length = Eigen::Vector3d::Zero());
   /// Velocity of the IMU now in IMU axes [m/s].
   bool correctVelocity(const Eigen::Vector3d& velocity, const Eigen::Matrix3d& covariance);
   /// Tilt of an external attitude estimate now; only the vertical of R_world_imu is used. Sigma per axis [rad].
@@ -104,8 +113,10 @@ class InertialState {
   /// Goes on at another time (clock jump, long outage): attitude and biases stay, `attitude_sigma` [rad] is added to
   /// each axis, velocity is 0 with its prior, and now is the frame.
   void restartAt(std::int64_t stamp_ns, double attitude_sigma);
-  /// Adds what one cause may have changed everywhere: `other` is the same state where the cause is one sigma.
-  void addCommonError(const InertialState& other);
+  /// Adds what longer lengths may have changed everywhere: `other` is the same state where they were longer. Shares of
+  /// how much longer they were, in standard deviations: `noise_share` has no other effect, `length_share` of it is
+  /// lengthError(), which was taken for known.
+  void addCommonError(const InertialState& other, double noise_share, double length_share);
   /// The next initialize() starts from the bias priors.
   void forgetBiases();
 
@@ -136,6 +147,12 @@ class InertialState {
 
   const Eigen::Vector3d& gyroscopeBias() const { return gyroscope_bias_; }          ///< [rad/s]
   const Eigen::Vector3d& accelerometerBias() const { return accelerometer_bias_; }  ///< [m/s^2]
+  /// By which share vision's lengths are too long, as far as the accelerometer can tell, and its standard deviation.
+  double lengthError() const { return visionShare() * length_error_; }
+  double lengthSigma() const;
+  /// The same of what vision and accelerometer disagree about, whichever is wrong.
+  double lengthDisagreement() const { return length_error_; }
+  double lengthDisagreementSigma() const { return std::sqrt(covariance_(kLength, kLength)); }
   Eigen::Matrix3d gyroscopeBiasCovariance() const;
   Eigen::Matrix3d accelerometerBiasCovariance() const;
   /// Bias-corrected rate now, IMU axes [rad/s].
@@ -148,7 +165,7 @@ class InertialState {
 
  private:
   static constexpr int kTheta = 0, kVelocity = 3, kGyroscopeBias = 6, kAccelerometerBias = 9, kFrameTheta = 12,
-                       kDisplacement = 15, kSize = 18;
+                       kDisplacement = 15, kLength = 18, kSize = 19;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using ErrorState = Eigen::Matrix<double, kSize, 1>;
 
@@ -186,6 +203,9 @@ class InertialState {
   /// residual = H error + noise, with two or three rows.
   bool correct(const VectorRef& residual, const MatrixRef& H, const MatrixRef& noise, CorrectionCounts* counts,
                const ErrorState& widening, bool learn_accelerometer_bias = true);
+  /// Of what vision and accelerometer disagree about in lengths, the share that is vision's.
+  double visionShare() const;
+  double accelerometerScaleSigma() const;
   /// Rotation to apply for the attitude error θ; turns the covariance of that block into the new axes.
   Eigen::Matrix3d turnError(const Eigen::Vector3d& theta, int block);
   void inject(const ErrorState& error);
@@ -205,11 +225,14 @@ class InertialState {
   Eigen::Vector3d gyroscope_bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d displacement_ = Eigen::Vector3d::Zero();
+  double length_error_ = 0.0;    // of vision against the accelerometer
+  double sample_spacing_ = 0.0;  // mean of late [s]
   Covariance covariance_ = Covariance::Zero();
   Eigen::Matrix3d rotation_noise_ = Eigen::Matrix3d::Zero();          // gyroscope noise since the frame, axes now
   Eigen::Matrix3d rotation_bias_jacobian_ = Eigen::Matrix3d::Zero();  // of the rotation since the frame, axes now
   ForceWindow window_;                                                // since the last velocity
   bool held_ = false;                                                 // last_ is no sample
+  bool force_seen_ = true;                                            // all the time since the frame
   std::int64_t rate_seen_ns_ = 0, velocity_seen_ns_ = 0;              // when vision last saw them [ns]
   double doubted_rate_density_ = 0;  // of a gyroscope that vision contradicts [rad^2/s]
   std::vector<ImuSample> scratch_;

@@ -74,6 +74,8 @@ class EgoMotion {
   std::vector<std::string> faults() const;
   /// Whether the gyroscope agrees with the images, or that this cannot be told yet.
   std::string gyroscopeCheck() const;
+  /// Of each camera that is calibrated while running; empty without `calibrate_online`.
+  std::vector<CameraCalibration> calibration() const;
 
  private:
   class Impl;

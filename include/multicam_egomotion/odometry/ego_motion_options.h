@@ -16,6 +16,7 @@ namespace multicam_egomotion {
 /// Everything that can be set, with its default. The ROS layer and the bag runner read these names from parameters.
 struct EgoMotionOptions {
   bool use_imu = true;                     ///< false: vision alone (contract 9)
+  bool calibrate_online = true;            ///< estimate rotations of the cameras and static errors of their images
   std::string imu_orientation = "filter";  ///< filter: own gravity; message: tilt from sensor_msgs/Imu orientation
   std::string solver = "auto";             ///< auto, 4pt-vertical, 4pt-axis (contract 8)
   std::uint64_t seed = 1;                  ///< of RANSAC

@@ -32,6 +32,16 @@ struct TwistWithCovariance {
   Matrix6d covariance = Matrix6d::Zero();             ///< linear, angular; body axes
 };
 
+/// What the images say of one camera beside the rig file.
+struct CameraCalibration {
+  int camera = 0;
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();    ///< d in R_body_cam = that of the rig file * Exp(d) [rad]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of d, as far as errors of the images differ [rad^2]
+  bool overlaps = false;         ///< with a camera before it; only then the two below are estimated
+  double focal_length = 0.0;     ///< longer than in the rig file, against that other camera's, as a share [1]
+  double static_error_px = 0.0;  ///< across the epipolar lines to another camera, RMS over the image [px]
+};
+
 /// A feature of the newest frame as it was used, for pictures and diagnostics.
 struct FeatureReport {
   TrackId track = 0;

@@ -18,12 +18,18 @@ class ImageNoise {
 
   double pixelSigma() const { return sigma_; }
 
+  /// Of what all views of a track in one camera have in common against those in another, per axis [px].
+  double offsetSigma() const { return offset_sigma_; }
+
   /// Share of pixelSigma()'s variance that counts in the motion between two frames: much of a tracked patch's error is
   /// the same in both and cancels, and pixelSigma() has a floor for what calibration leaves.
   double whiteShare() const { return white_share_; }
 
  private:
+  void measureOffsets(const BundleAdjustment& bundle, double robust_width, double gain);
+
   double sigma_, min_sigma_, max_sigma_;
+  double offset_sigma_ = 0.25;
   double white_share_ = 1.0;
   int measurements_ = 0;
 };

@@ -40,6 +40,10 @@ class MotionModel {
   virtual Eigen::Vector3d upAtFrame() const = 0;
   virtual double tiltSigma() const = 0;  ///< per axis [rad]
   virtual TwistWithCovariance twist() const = 0;
+  /// By which share lengths are too long that vision measures with the rig file's distances between cameras; nothing
+  /// where the images alone know lengths.
+  virtual double lengthError() const { return 0.0; }
+  virtual std::optional<double> lengthSigma() const { return std::nullopt; }
   virtual Eigen::Vector3d gyroscopeBias() const { return Eigen::Vector3d::Zero(); }
   virtual Eigen::Vector3d accelerometerBias() const { return Eigen::Vector3d::Zero(); }
 
@@ -54,9 +58,12 @@ class MotionModel {
 /// motion, when vision has shown that the accelerometer was far off the vertical, or how long the motions were.
 class InertialMotion : public MotionModel {
  public:
-  /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9).
+  /// `tilt_from_message`: the vertical comes from the samples' orientation as well (contract 9). `time_sigma`: of the
+  /// IMU's stamps against the images' [s]. `first_camera`: its centre in the body; an error of lengths is one of its
+  /// displacement [m].
   InertialMotion(const ImuCalibration& calibration, const InertialStateOptions& options, const ImuBuffer* buffer,
-                 bool tilt_from_message);
+                 bool tilt_from_message, double time_sigma = 0.0,
+                 const Eigen::Vector3d& first_camera = Eigen::Vector3d::Zero());
 
   bool initialized() const override { return initialized_; }
   bool initialize(std::int64_t stamp_ns) override;
@@ -72,6 +79,8 @@ class InertialMotion : public MotionModel {
   Eigen::Vector3d upAtFrame() const override;
   double tiltSigma() const override { return state_.tiltSigma(); }
   TwistWithCovariance twist() const override;
+  double lengthError() const override { return state_.lengthError(); }
+  std::optional<double> lengthSigma() const override { return state_.lengthSigma(); }
   Eigen::Vector3d gyroscopeBias() const override { return state_.gyroscopeBias(); }
   Eigen::Vector3d accelerometerBias() const override { return state_.accelerometerBias(); }
   /// Between the displacements seen in the last 60 frames or so and those that the accelerometer expected: mean of
@@ -105,8 +114,9 @@ class InertialMotion : public MotionModel {
   void startFromVertical();
   void makeStartAnew(const Eigen::Vector3d& up);
   void replayStart(const Eigen::Vector3d& up, double lengthening);
-  void learn(const RelativeMotion& vision, bool scale_seen);
+  void learn(const RelativeMotion& vision, bool scale_seen, bool learn_length = true);
   void takeTiltFromMessage();
+  Eigen::Matrix3d alignmentCovariance() const;
   void propagateTo(std::int64_t stamp_ns);
   void catchUp();
   void startFromHere();
@@ -116,6 +126,9 @@ class InertialMotion : public MotionModel {
   double contradiction_ = 0.0;
   const ImuBuffer* buffer_;
   bool tilt_from_message_;
+  double time_sigma_;
+  Eigen::Vector3d first_camera_;
+  Eigen::Vector3d rate_at_frame_ = Eigen::Vector3d::Zero();  // IMU axes of the frame [rad/s]
   bool initialized_ = false;
 
   InertialState complete_;               // at the last frame that the samples reached

@@ -23,12 +23,12 @@ struct RigFile {
 /// Loads a rig from YAML: our own format (see writeRigFile, config/) or Kalibr's camchain-imucam.yaml as it is.
 /// For Kalibr: the body is the IMU frame, `kalibr_imu_path` its imu.yaml (empty: default noise densities;
 /// our own format takes none); cameras
-/// pinhole with radtan, equidistant or none; timeshift_cam_imu is t_imu - t_cam.
+/// pinhole with radtan, equidistant or none; timeshift_cam_imu is t_imu - t_cam; sigmas are the defaults.
 /// Throws std::runtime_error naming file, key, what was found and what was expected.
 RigFile loadRigFile(const std::string& path, const std::string& kalibr_imu_path = "");
 
-/// Writes our own format; loadRigFile returns the same numbers. Throws std::runtime_error if the file cannot be
-/// written.
+/// Writes our own format; loadRigFile returns the same numbers, sigmas in degrees and percent to 15 digits. Throws
+/// std::runtime_error if the file cannot be written.
 void writeRigFile(const std::string& path, const RigFile& file);
 
 }  // namespace multicam_egomotion

@@ -11,6 +11,7 @@
 #include "multicam_egomotion/odometry/ego_motion_result.h"
 #include "multicam_egomotion/odometry/image_noise.h"
 #include "multicam_egomotion/odometry/motion_summary.h"
+#include "multicam_egomotion/odometry/rig_calibration.h"
 #include "multicam_egomotion/tracking/tracked_frame.h"
 
 namespace multicam_egomotion {
@@ -42,7 +43,9 @@ struct WindowEstimate {
   RelativeMotion vision;                   ///< from the images alone (contract 4)
   double lengthening = 1.0;                ///< factor by which the motions before are longer than they seemed
   double scale_sigma = 0.0;                ///< contract 7
+  double scale_noise = 0.0;                ///< the part of it that comes of noise in the images
   ScaleState scale_state = ScaleState::kNotApplicable;
+  Eigen::MatrixXd calibration_covariance;  ///< in the order of the calibration's unknowns
   double pixel_sigma = 0.0;
   double parallax_px = 0.0;  ///< since the last keyframe
   bool keyframe = false;
@@ -54,9 +57,9 @@ struct WindowEstimate {
 /// prior on the remaining poses, and its track starts again, so no observation is used twice.
 class Window {
  public:
-  explicit Window(const WindowOptions& options);
+  explicit Window(const WindowOptions& options, const RigCalibration& calibration = {});
 
-  /// Starts anew with one keyframe at a known pose.
+  /// Starts anew with one keyframe at a known pose; what has been learnt of the calibration is kept.
   void start(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_body, const Matrix6d& covariance,
              const TrackedFrame& frame, const std::vector<Eigen::Isometry3d>& T_body_cam);
   bool empty() const { return states_.empty(); }
@@ -69,11 +72,21 @@ class Window {
   /// Turns everything by R (odom axes) about `pivot`: a correction of gravity (contract 5).
   void rotateAbout(const Eigen::Vector3d& pivot, const Eigen::Matrix3d& R);
 
+  /// Makes all lengths `factor` times as long about the newest body position: of motions and points, and the distances
+  /// between the cameras, which are placed from `first_camera` on (body axes [m]). The views fit as before.
+  void scale(double factor, const Eigen::Vector3d& first_camera);
+  /// Of all lengths, by what is not estimated of the calibration; that of the rig file until it is set [1].
+  void setLengthSigma(double sigma) { length_sigma_ = sigma; }
+
   /// Triangulated points in odom with a distance known to better than 20 % [m].
   std::vector<Eigen::Vector3d> points() const;
   /// Those that the newest frame does not see, in its body frame.
   std::vector<TrackedPoint> unseen() const;
   double pixelSigma() const { return noise_.pixelSigma(); }
+  /// What the views so far say of the cameras, with the prior of the rig file.
+  const BundleCalibration& calibration() const { return calibration_; }
+  /// Its covariance, in the order of its unknowns [rad, px].
+  const Eigen::MatrixXd& calibrationCovariance() const { return calibration_covariance_; }
 
  private:
   struct State {
@@ -104,13 +117,18 @@ class Window {
   void marginalizeOldest();
   std::vector<int> landmarksAcross() const;
   BundleAdjustment makeBundle(std::vector<TrackId>* tracks) const;
+  BundlePrior calibrationAlone() const;
 
   WindowOptions options_;
+  RigCalibration rig_calibration_;
+  BundleCalibration calibration_;
+  Eigen::MatrixXd calibration_covariance_;
+  double length_sigma_;
   ImageNoise noise_;
   bool newcomers_wait_ = false;  ///< tracks of few frames, none a keyframe, have no say in the pose
   std::vector<State> states_;    ///< keyframes, oldest first; then the previous frame if it is none, then the newest
   std::map<TrackId, Landmark> landmarks_;
-  PosePrior prior_;
+  BundlePrior prior_;
   /// Pose where the window started and its covariance, which stays outside: with a weak prior the small errors of
   /// linearization that marginalization leaves would move the whole window.
   RelativeMotion start_;

@@ -6,6 +6,9 @@
 
 namespace multicam_egomotion {
 
+/// Whether enough landmarks are seen by two cameras at once, whose distances tell the scale.
+bool overlapShowsScale(const BundleAdjustment& bundle);
+
 /// Tries other scales of all motion and points of an adjustment that has been solved, and takes over what fits better.
 /// Cameras without overlap see the scale only through rotation: steps of the adjustment along it are short, and from a
 /// start that is far off they end long before it is found. Nothing is tried where cameras overlap.

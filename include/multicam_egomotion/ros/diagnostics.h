@@ -17,11 +17,13 @@ namespace multicam_egomotion {
 struct Health {
   enum class State { kWaiting, kRunning, kConfigError };
   State state = State::kWaiting;
-  std::string message;                     ///< what is waited for, or what is wrong
-  std::vector<std::string> silent_topics;  ///< inputs without a message for two seconds
-  std::vector<std::string> faults;         ///< of the data, as the odometry names them
-  std::string gyroscope_check;             ///< whether it agrees with the images
-  std::optional<EgoMotionResult> result;   ///< the newest, without features and points
+  std::string message;                         ///< what is waited for, or what is wrong
+  std::vector<std::string> silent_topics;      ///< inputs without a message for two seconds
+  std::vector<std::string> faults;             ///< of the data, as the odometry names them
+  std::string gyroscope_check;                 ///< whether it agrees with the images
+  std::vector<CameraCalibration> calibration;  ///< of each camera that is calibrated while running
+  std::vector<std::string> cameras;            ///< names of all cameras of the rig
+  std::optional<EgoMotionResult> result;       ///< the newest, without features and points
   bool use_imu = true;
   bool paused = false;
   EgoMotionCounters counters;

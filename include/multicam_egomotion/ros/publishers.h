@@ -9,6 +9,7 @@
 
 #include "multicam_egomotion/geometry/camera_rig.h"
 #include "multicam_egomotion/odometry/ego_motion_result.h"
+#include "multicam_egomotion/ros/calibration_message.h"
 #include "multicam_egomotion/ros/messages.h"
 #include "multicam_egomotion/ros/node_options.h"
 #include "multicam_egomotion/ros/recent_images.h"
@@ -21,6 +22,8 @@ class Publishers {
   Publishers(ros::NodeHandle node, const FrameNames& frames, const NodeOptions& options);
 
   void publish(const EgoMotionResult& result, const CameraRig& rig, const RecentImages& images);
+  /// With each result; published when it is time.
+  void publishCalibration(const EgoMotion& odometry, std::int64_t stamp_ns);
 
   /// Pictures for people, which may be switched while running.
   void show(bool features, bool points) {
@@ -38,10 +41,11 @@ class Publishers {
   const FrameNames frames_;
   NodeOptions options_;
   image_transport::ImageTransport transport_;
-  ros::Publisher odometry_, relative_pose_, ego_motion_, odometry_imu_, path_publisher_, points_;
+  ros::Publisher odometry_, relative_pose_, ego_motion_, odometry_imu_, path_publisher_, points_, calibration_;
   image_transport::Publisher features_;
   tf2_ros::TransformBroadcaster broadcaster_;
 
+  CalibrationMessages calibrations_;
   nav_msgs::Path path_;
   std::uint32_t path_epoch_ = 0;
   ros::Time path_published_;

@@ -27,9 +27,8 @@ struct CrossCameraOptions {
 };
 
 struct CrossCameraMatch {
-  ImagePoint point;                      ///< in the second camera
-  double inverse_distance = 0.0;         ///< along the bearing in the first camera [1/m], at least 0
-  bool contradicts_calibration = false;  ///< looks alike, but no point in space is seen in both places
+  ImagePoint point;               ///< in the second camera
+  double inverse_distance = 0.0;  ///< along the bearing in the first camera [1/m], at least 0
 };
 
 /// Finds features of one camera in the image of another that looks at the same scene at the same time. Patches are
@@ -45,13 +44,13 @@ class CrossCameraMatcher {
     const ImagePyramid& from_image;
     const ImagePyramid& to_image;
     Eigen::Isometry3d T_to_from;
+    double epipolar_slack_px = 0.0;  ///< matches may be so much further off their lines: T_to_from is not known well
   };
 
-  /// Searches along the whole epipolar curve. Where nothing on it looks alike, what does beside it is returned as a
-  /// match that contradicts the calibration.
+  /// Searches along the whole epipolar curve.
   std::optional<CrossCameraMatch> search(const Pair& pair, const ImagePoint& point) const;
 
-  /// Refines from a known inverse distance [1/m] of the previous frame, beside the curve as search() does. `model`:
+  /// Refines from a known inverse distance [1/m] of the previous frame. `model`:
   /// what is estimated in the finest image.
   std::optional<CrossCameraMatch> rematch(const Pair& pair, const ImagePoint& point, double inverse_distance,
                                           WarpModel model = WarpModel::kTranslation) const;

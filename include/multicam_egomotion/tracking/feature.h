@@ -27,8 +27,7 @@ struct Feature {
   bool alive = true;
   double inverse_distance = -1.0;  ///< in the owner, along its bearing [1/m]; negative: unknown
   std::array<bool, CameraRig::kMaxCameras> seen{};
-  std::array<bool, CameraRig::kMaxCameras> beside{};      ///< where what looks like it contradicts the calibration
-  std::array<ImagePoint, CameraRig::kMaxCameras> points;  ///< where seen or beside
+  std::array<ImagePoint, CameraRig::kMaxCameras> points;  ///< where seen
   std::unique_ptr<ReferencePatch> reference;              ///< in the owner
 };
 

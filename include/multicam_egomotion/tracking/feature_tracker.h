@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "multicam_egomotion/geometry/camera_rig.h"
-#include "multicam_egomotion/tracking/calibration_check.h"
 #include "multicam_egomotion/tracking/feature_tracker_counters.h"
 #include "multicam_egomotion/tracking/feature_tracker_options.h"
 #include "multicam_egomotion/tracking/frame_set.h"
@@ -47,6 +46,10 @@ class FeatureTracker {
   TrackedFrame track(const FrameSet& frames, const Eigen::Isometry3d& T_prev_cur,
                      const std::vector<Eigen::Isometry3d>& T_body_cam);
 
+  /// How much further off their epipolar lines matches with each camera may be from now on [px]: its rotation is not
+  /// known well. Empty: none.
+  void setEpipolarSlack(const std::vector<double>& slack_px);
+
   /// Looks for features that left their camera where others should see them in the newest frame. What is found is
   /// tracked on from the next frame, as the same track. `points`: where tracks are that the frame does not have; what
   /// is not among them, or left in a frame without this call, is forgotten. `T_prev_cur`: as for track(), estimated.
@@ -62,9 +65,6 @@ class FeatureTracker {
   void reset();
 
   const FeatureTrackerCounters& counters() const;
-
-  /// What the matches say of the calibration between cameras.
-  const CalibrationCheck& calibrationCheck() const;
 
  private:
   class Impl;

@@ -23,9 +23,7 @@ Eigen::Matrix<double, 2, 3> bearingToPixel(const ImagePoint& point);
 
 /// Signed Sampson error [px] of the epipolar constraint b · (t × R a) = 0, first order in the pixels of both images.
 /// T_b_a maps the optical frame of a into that of b. Zero when the two centres coincide.
-/// `by_turn`: derivative by d in R <- Exp(d) R [px/rad], optional.
-double epipolarError(const ImagePoint& a, const ImagePoint& b, const Eigen::Isometry3d& T_b_a,
-                     Eigen::Vector3d* by_turn = nullptr);
+double epipolarError(const ImagePoint& a, const ImagePoint& b, const Eigen::Isometry3d& T_b_a);
 
 /// Inverse distance [1/m] from the centre of a along its bearing to the point where it comes closest to the ray of b
 /// (least squares of b × (R a + rho t)); negative for rays that diverge, 0 when the centres coincide.

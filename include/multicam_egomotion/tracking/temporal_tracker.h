@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <vector>
 
 #include "multicam_egomotion/geometry/camera_rig.h"
@@ -20,7 +21,12 @@ struct FramePair {
   std::vector<FlowPyramid> previous, current;  ///< by camera; empty where the image was missing
   std::vector<Eigen::Isometry3d> previous_T_body_cam, T_body_cam;
   Eigen::Isometry3d T_cur_prev = Eigen::Isometry3d::Identity();  ///< of the body, predicted
+  std::vector<double> epipolar_slack_px;                         ///< by camera, of matches with other cameras
 
+  /// Of matches between two cameras [px].
+  double slackBetween(int a, int b) const {
+    return epipolar_slack_px.empty() ? 0.0 : std::hypot(epipolar_slack_px[a], epipolar_slack_px[b]);
+  }
   /// From the optical frame of a camera at the previous frame to that of now.
   Eigen::Isometry3d motion(int camera) const {
     return T_body_cam[camera].inverse() * T_cur_prev * previous_T_body_cam[camera];

@@ -68,8 +68,8 @@ std::vector<KittiRun> runKittiSequence(KittiSequence* sequence, const Experiment
     runs.push_back({solver.name, std::vector<std::vector<PairEstimate>>(seeds, std::vector<PairEstimate>(pairs))});
   }
   forEachInParallel(sequence->folder.sequence + ": plain RANSAC", pairs, options.threads, [&](std::size_t pair) {
-    const CorrespondenceSet set = matchTracks({sequence->frames[pair], T_body_cam},
-                                              {sequence->frames[pair + 1], T_body_cam}, Eigen::Matrix3d::Identity())
+    const CorrespondenceSet set = matchTracks({sequence->frames[pair], T_body_cam, {}},
+                                              {sequence->frames[pair + 1], T_body_cam, {}}, Eigen::Matrix3d::Identity())
                                       .set;
     const SolverPriors priors = priorsOf(*sequence, pair);
     for (std::size_t s = 0; s < solvers.size(); ++s) {

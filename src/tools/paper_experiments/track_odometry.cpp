@@ -69,7 +69,7 @@ bool TrackOdometry::estimate(const PosedFrame& newest, const MotionSummary& pred
   ended_.insert(consensus.outliers.begin(), consensus.outliers.end());
 
   MotionSummary motion = predicted;
-  motion.use_translation = !scale_seen_;
+  motion.use_translation = true;
   Eigen::Isometry3d along = consensus.T_previous_body;
   along.translation() = along.translation().normalized() * motion.T_a_b.translation().norm();
   const WindowEstimate estimate =

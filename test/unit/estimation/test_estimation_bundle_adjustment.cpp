@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bundle_scene.h"
+#include "dense_bundle.h"
 #include "multicam_egomotion/geometry/covariance.h"
 
 namespace multicam_egomotion {
@@ -41,88 +42,11 @@ void perturbPoses(BundleScene* scene, double position, double rotation, Noise* n
   }
 }
 
-// Landmark moved by (two angles, inverse distance).
-BundleLandmark moved(const BundleLandmark& landmark, const Eigen::Vector3d& d) {
-  BundleLandmark result = landmark;
-  const Eigen::Vector3d u = landmark.direction.unitOrthogonal(), v = landmark.direction.cross(u);
-  result.direction = (landmark.direction + d[0] * u + d[1] * v).normalized();
-  result.inverse_distance += d[2];
-  return result;
-}
-
 // Without the prior on inverse distances, which would draw the solution away from the truth.
 BundleOptions unbiasedOptions() {
   BundleOptions options;
   options.inverse_distance_sigma = 1e4;
   return options;
-}
-
-// Residuals of all observations with square-root weights held at the present values, by poses and then landmarks.
-Eigen::VectorXd weightedResiduals(const BundleAdjustment& bundle, const std::vector<double>& root_weights) {
-  std::vector<double> residuals;
-  std::size_t view_index = 0;
-  for (const BundleLandmark& landmark : bundle.landmarks) {
-    for (const BundleObservation& view : landmark.observations) {
-      const BundlePose& pose = bundle.poses[view.pose];
-      const Eigen::Vector3d point = landmark.origin + landmark.direction / landmark.inverse_distance;
-      const Eigen::Vector3d x = pose.R.transpose() * (point - pose.p) - view.center;
-      const Eigen::Vector2d error = view.to_pixel * x / view.bearing.dot(x) / bundle.pixel_sigma;
-      const double weight = root_weights.empty() ? 1.0 : root_weights[view_index++];
-      residuals.push_back(weight * error.x());
-      residuals.push_back(weight * error.y());
-    }
-  }
-  return Eigen::Map<Eigen::VectorXd>(residuals.data(), residuals.size());
-}
-
-std::vector<double> rootWeights(const BundleAdjustment& bundle, const BundleOptions& options) {
-  const Eigen::VectorXd residuals = weightedResiduals(bundle, {});
-  std::vector<double> weights;
-  for (int i = 0; i < residuals.size(); i += 2) {
-    weights.push_back(
-        1.0 / std::sqrt(1.0 + residuals.segment<2>(i).squaredNorm() / (options.robust_width * options.robust_width)));
-  }
-  return weights;
-}
-
-// Normal equations of the observations with the landmarks, dense and by central differences.
-void denseVision(const BundleAdjustment& bundle, const BundleOptions& options, Eigen::MatrixXd* H, Eigen::VectorXd* b) {
-  const int poses = static_cast<int>(bundle.poses.size()), landmarks = static_cast<int>(bundle.landmarks.size());
-  const std::vector<double> weights = rootWeights(bundle, options);
-  const Eigen::VectorXd residuals = weightedResiduals(bundle, weights);
-  Eigen::MatrixXd J(residuals.size(), 6 * poses + 3 * landmarks);
-  const double step = 1e-5;
-  for (int c = 0; c < J.cols(); ++c) {
-    Eigen::VectorXd side[2];
-    for (int s : {0, 1}) {
-      BundleAdjustment shifted = bundle;
-      if (c < 6 * poses) {
-        shifted.poses[c / 6] = retract(bundle.poses[c / 6], (s ? step : -step) * Vector6d::Unit(c % 6));
-      } else {
-        const int l = (c - 6 * poses) / 3;
-        shifted.landmarks[l] = moved(bundle.landmarks[l], (s ? step : -step) * Eigen::Vector3d::Unit(c % 3));
-      }
-      side[s] = weightedResiduals(shifted, weights);
-    }
-    J.col(c) = (side[1] - side[0]) / (2.0 * step);
-  }
-  *H = J.transpose() * J;
-  *b = -J.transpose() * residuals;
-  for (int l = 0; l < landmarks; ++l) {
-    const int at = 6 * poses + 3 * l + 2;
-    const double information = 1.0 / (options.inverse_distance_sigma * options.inverse_distance_sigma);
-    (*H)(at, at) += information;
-    (*b)[at] -= information * bundle.landmarks[l].inverse_distance;
-  }
-}
-
-// Schur complement of the landmarks.
-void eliminateLandmarks(const Eigen::MatrixXd& H, const Eigen::VectorXd& b, int kept, Eigen::MatrixXd* reduced_H,
-                        Eigen::VectorXd* reduced_b) {
-  const int gone = static_cast<int>(H.rows()) - kept;
-  const Eigen::MatrixXd gain = symmetricSolve(H.bottomRightCorner(gone, gone), H.bottomLeftCorner(gone, kept));
-  *reduced_H = H.topLeftCorner(kept, kept) - H.topRightCorner(kept, gone) * gain;
-  *reduced_b = b.head(kept) - gain.transpose() * b.tail(gone);
 }
 
 double largestPoseError(const BundleScene& scene, bool rotation) {
@@ -151,13 +75,13 @@ TEST(BundleAdjustment, GradientIsThatOfTheCost) {
     BundleScene scene = perturbedScene(seed, 0.0);
     Noise noise(seed + 50);
     perturbPoses(&scene, 0.002, 0.001, &noise);
-    scene.bundle.prior = PosePrior();
+    scene.bundle.prior = BundlePrior();
     // Landmarks at their conditional optimum, where the reduced gradient is the gradient by the poses alone.
     BundleAdjustment bundle = scene.bundle;
     for (int repetition = 0; repetition < 40; ++repetition) {
       Eigen::MatrixXd H;
       Eigen::VectorXd b;
-      denseVision(bundle, options, &H, &b);
+      DenseBundle(bundle).linearize(bundle, options, &H, &b);
       for (std::size_t l = 0; l < bundle.landmarks.size(); ++l) {
         const int at = 18 + 3 * static_cast<int>(l);
         bundle.landmarks[l] = moved(bundle.landmarks[l], symmetricSolve(H.block<3, 3>(at, at), b.segment<3>(at)));
@@ -213,27 +137,13 @@ TEST(BundleAdjustment, NormalEquationsEqualTheDenseSchurComplement) {
     perturbPoses(&scene, 0.005, 0.002, &noise);
     Eigen::MatrixXd H, reduced_H, vision_H, rest_H;
     Eigen::VectorXd b, reduced_b, vision_b, rest_b;
-    denseVision(scene.bundle, options, &H, &b);
-    eliminateLandmarks(H, b, 18, &reduced_H, &reduced_b);
+    DenseBundle(scene.bundle).linearize(scene.bundle, options, &H, &b);
+    eliminateLast(H, b, 18, &reduced_H, &reduced_b);
     scene.bundle.linearize(&vision_H, &vision_b, &rest_H, &rest_b, options);
     EXPECT_LT((vision_H - reduced_H).norm(), 1e-4 * reduced_H.norm());
     EXPECT_LT((vision_b - reduced_b).norm(), 1e-4 * reduced_b.norm());
     EXPECT_LT((vision_H - vision_H.transpose()).norm(), 1e-9 * vision_H.norm());
   }
-}
-
-TEST(BundleAdjustment, LandmarksLeftOutDoNotCount) {
-  const BundleOptions options;
-  BundleScene scene = makeBundleScene(3, 20, stereoCenters(), 0.5, 4), half = scene;
-  half.bundle.landmarks.resize(10);
-  std::vector<char> use(20, 0);
-  std::fill(use.begin(), use.begin() + 10, 1);
-  Eigen::MatrixXd H, half_H, rest_H;
-  Eigen::VectorXd b, half_b, rest_b;
-  scene.bundle.linearize(&H, &b, &rest_H, &rest_b, options, &use);
-  half.bundle.linearize(&half_H, &half_b, &rest_H, &rest_b, options);
-  EXPECT_EQ(H, half_H);
-  EXPECT_EQ(b, half_b);
 }
 
 TEST(BundleAdjustment, ConvergesToTheTruthFromPerturbedStarts) {
@@ -266,7 +176,7 @@ TEST(BundleAdjustment, OneStepNearTheOptimumIsTheDenseOne) {
   perturbPoses(&scene, 0.002, 0.001, &noise, 1);
   Eigen::MatrixXd H;
   Eigen::VectorXd b;
-  denseVision(scene.bundle, options, &H, &b);
+  DenseBundle(scene.bundle).linearize(scene.bundle, options, &H, &b);
   const Eigen::VectorXd step = symmetricSolve(H.bottomRightCorner(H.rows() - 6, H.rows() - 6), b.tail(H.rows() - 6));
   const std::vector<BundlePose> before = scene.bundle.poses;
   scene.bundle.solve(options);

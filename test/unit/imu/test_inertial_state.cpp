@@ -488,10 +488,27 @@ TEST(InertialState, CoversWhatACommonCauseChanges) {
   const Eigen::Matrix3d velocity_covariance = state.velocityCovarianceInImuAxes() + velocity * velocity.transpose();
   const Eigen::Matrix3d attitude_covariance = state.attitudeCovariance() + theta * theta.transpose();
   const Eigen::Matrix3d attitude = state.attitude();
-  state.addCommonError(other);
+  state.addCommonError(other, 1.0, 0.0);
   EXPECT_LT((state.velocityCovarianceInImuAxes() - velocity_covariance).norm(), 1e-12);
   EXPECT_LT((state.attitudeCovariance() - attitude_covariance).norm(), 1e-12);
   EXPECT_EQ(state.attitude(), attitude);
+}
+
+TEST(InertialState, ACommonErrorOfLengthsIsPartlyKnown) {
+  // Noise and the unknown lengths share what longer lengths change; that of the lengths is corrected with them.
+  const Trajectory motion;
+  InertialStateOptions options;
+  options.length_sigma = 0.05;
+  InertialState state = started(motion, options);
+  followOver(motion, 0, 2, &state);
+  InertialState other = state;
+  ASSERT_TRUE(other.correctVelocity(state.velocityInImuAxes() + Eigen::Vector3d(0.01, 0.02, -0.01), isotropic(0.01)));
+  const Eigen::Vector3d velocity = other.velocityInImuAxes() - state.velocityInImuAxes();
+  const Eigen::Matrix3d covariance = state.velocityCovarianceInImuAxes() + velocity * velocity.transpose();
+  state.addCommonError(other, 0.6, 0.8);
+  EXPECT_LT((state.velocityCovarianceInImuAxes() - covariance).norm(), 1e-12);
+  EXPECT_NEAR(state.lengthSigma(), 0.05, 1e-12);
+  EXPECT_EQ(state.lengthError(), 0.0);
 }
 
 TEST(InertialState, RestartsAtAnotherTimeWithItsBiases) {

@@ -4,30 +4,13 @@
 
 #include <cmath>
 
+#include "inertial_run.h"
 #include "multicam_egomotion/geometry/so3.h"
 #include "multicam_egomotion/imu/imu_buffer.h"
 #include "multicam_egomotion/odometry/learned_motion.h"
-#include "multicam_egomotion/odometry/motion_model.h"
-#include "simulator/simulator.h"
 
 namespace multicam_egomotion {
 namespace {
-
-Eigen::Isometry3d motion(const Eigen::Vector3d& p, const Eigen::Vector3d& rotation_vector) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = expSO3(rotation_vector);
-  T.translation() = p;
-  return T;
-}
-
-RelativeMotion seen(const Eigen::Isometry3d& T, double position_sigma, double rotation_sigma) {
-  RelativeMotion vision;
-  vision.T_a_b = T;
-  vision.covariance.setZero();
-  vision.covariance.diagonal().head<3>().setConstant(position_sigma * position_sigma);
-  vision.covariance.diagonal().tail<3>().setConstant(rotation_sigma * rotation_sigma);
-  return vision;
-}
 
 constexpr std::int64_t kFramePeriod = 50000000;
 const Eigen::Isometry3d kMotion = motion({0.05, 0.01, -0.02}, {0.01, 0.02, 0.03});
@@ -93,6 +76,28 @@ TEST(ConstantRateMotion, CarriesTheVerticalWithVision) {
   }
 }
 
+// A length that is hardly seen must not erase what is known of the speed: one such frame would let the pose jump.
+TEST(ConstantRateMotion, AWeakLengthKeepsTheSpeed) {
+  ConstantRateMotion model(0.0524, 5.0);
+  std::int64_t now = 1000;
+  model.initialize(now);
+  const auto see = [&](const Eigen::Vector3d& p, double sigma) {
+    model.advanceTo(now += kFramePeriod);
+    model.correct(seen(motion(p, Eigen::Vector3d::Zero()), sigma, 1e-4), true);
+    model.markFrame();
+  };
+  for (int i = 0; i < 20; ++i) see({0.1, 0.0, 0.0}, 1e-3);
+  EXPECT_NEAR(model.twist().linear.x(), 2.0, 0.01);
+  const double sigma = std::sqrt(model.twist().covariance(0, 0));
+  see({7.0, 0.0, 0.0}, 5.0);
+  EXPECT_NEAR(model.twist().linear.x(), 2.0, 0.05);
+  // It has grown by what the acceleration may have changed, not to what vision says.
+  EXPECT_LT(std::sqrt(model.twist().covariance(0, 0)), std::hypot(sigma, 3.0 * kFramePeriod * 1e-9) + 1e-6);
+  // A length that is seen well decides again.
+  see({0.2, 0.0, 0.0}, 1e-3);
+  EXPECT_GT(model.twist().linear.x(), 2.5);
+}
+
 TEST(ConstantRateMotion, WithoutScaleTheSpeedStaysAndTheDirectionIsVisions) {
   ConstantRateMotion model(0.0524, 5.0);
   std::int64_t now = 1000;
@@ -137,8 +142,8 @@ TEST(LearnedMotion, APoorlyKnownScaleLeavesTheLengthOpen) {
   WindowEstimate estimate;
   estimate.vision = seen(motion({0.0, 0.5, 0.0}, Eigen::Vector3d::Zero()), 1e-3, 1e-4);
   estimate.scale_state = ScaleState::kObservable;
-  const auto sigma = [&](double scale_sigma, int axis) {
-    estimate.scale_sigma = scale_sigma;
+  const auto sigma = [&](double scale_noise, int axis) {
+    estimate.scale_noise = scale_noise;
     const LearnedMotion learned = learnedMotion(estimate, Eigen::Vector3d::Zero(), true, 5.0, 400.0);
     EXPECT_TRUE(learned.use_displacement);
     EXPECT_EQ(learned.vision.T_a_b.translation().y(), 0.5);
@@ -150,45 +155,6 @@ TEST(LearnedMotion, APoorlyKnownScaleLeavesTheLengthOpen) {
   EXPECT_GT(sigma(0.05, 1), 5.0 * 0.05 * 0.5);
   EXPECT_NEAR(sigma(0.05, 0), 1e-3, 1e-9);
 }
-
-// The inertial model over a simulated run, with what vision would say.
-class InertialRun {
- public:
-  InertialRun(const std::string& name, double seconds, double imu_noise_scale)
-      : simulator_(scenario(name, seconds, imu_noise_scale)) {
-    imu_ = simulator_.imu();
-    for (const SimulatedImu& one : imu_) buffer_.add(one.sample);
-    model_ = std::make_unique<InertialMotion>(simulator_.scenario().imu, InertialStateOptions(), &buffer_, false);
-  }
-
-  Eigen::Isometry3d truth(int frame) const { return simulator_.stateAtFrame(frame).T_world_body; }
-  Eigen::Isometry3d step(int frame) const { return truth(frame - 1).inverse() * truth(frame); }
-  double tiltError(int frame) const {
-    return std::acos(std::min(1.0, model_->up().dot(truth(frame).linear().transpose() * Eigen::Vector3d::UnitZ())));
-  }
-
-  void run(int first, int last, bool vision, bool scale) {
-    for (int frame = first; frame <= last; ++frame) {
-      model_->advanceTo(simulator_.frameStamp(frame));
-      if (vision) model_->correct(seen(step(frame), 5e-4, 3e-4), scale);
-      if (frame < last) model_->markFrame();
-    }
-  }
-
-  Simulator simulator_;
-  std::vector<SimulatedImu> imu_;
-  ImuBuffer buffer_;
-  std::unique_ptr<InertialMotion> model_;
-
- private:
-  static Scenario scenario(const std::string& name, double seconds, double imu_noise_scale) {
-    SimulationOptions options;
-    options.duration_s = seconds;
-    options.imu_noise_scale = imu_noise_scale;
-    options.cameras = 1;
-    return makeScenario(name, options);
-  }
-};
 
 TEST(InertialMotion, NeedsSamplesToStart) {
   ImuBuffer buffer;
@@ -352,7 +318,7 @@ LateScaleOutcome lateScale(bool revise, int failing) {
     if (!found) step.translation() *= frame < failing ? 0.2 : 0.5;
     estimate.vision = estimate.relative = seen(step, 1e-3, 3e-4);
     estimate.scale_state = found ? ScaleState::kObservable : ScaleState::kUnobservable;
-    estimate.scale_sigma = found ? 0.01 : 1.0;
+    estimate.scale_noise = estimate.scale_sigma = found ? 0.01 : 1.0;
     estimate.lengthening = found ? 2.0 : 1.0;
     model.advanceTo(stamp(frame));
     if (frame != failing) {

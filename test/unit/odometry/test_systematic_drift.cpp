@@ -45,7 +45,7 @@ TEST(SystematicDrift, WhatTheTiltDidBeforeItWasKnownStays) {
 
 TEST(SystematicDrift, APoorScaleAddsUp) {
   SystematicDrift drift;
-  for (int i = 0; i <= 10; ++i) drift.follow(Eigen::Vector3d(i, 0, 0), 0.0, i > 5 ? 0.1 : 0.0);
+  for (int i = 0; i <= 10; ++i) drift.follow(Eigen::Vector3d(i, 0, 0), 0.0, i > 5 ? 0.1 : 0.005);
   const double well = std::pow(5 * 0.005, 2), poor = std::pow(5 * 0.1, 2);
   EXPECT_NEAR(drift.covariance()(0, 0), well + poor + 2.0 * well, 1e-9);  // what was wrong before still is
 }

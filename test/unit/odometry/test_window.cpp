@@ -10,48 +10,10 @@
 namespace multicam_egomotion {
 namespace {
 
-SimulationOptions lasting(double seconds, std::uint64_t seed = 1, int cameras = 0) {
-  SimulationOptions options;
-  options.duration_s = seconds;
-  options.seed = seed;
-  options.cameras = cameras;
-  return options;
-}
-
 Scenario moving(Scenario scenario, const Trajectory::Motion& motion) {
   scenario.trajectory = Trajectory(motion);
   return scenario;
 }
-
-/// A window over simulated tracks, started at the true pose of a frame.
-class SimulatedWindow {
- public:
-  SimulatedWindow(const Scenario& scenario, const TrackSimulationOptions& options, int first)
-      : simulator_(scenario),
-        tracks_(simulateTracks(scenario, options)),
-        T_body_cam_(cameraPosesOf(scenario.rig)),
-        window_(WindowOptions()) {
-    const TrackedFrame& start = tracks_.frames[first];
-    window_.start(start.stamp_ns, truth(first), Matrix6d::Zero(), start, T_body_cam_);
-  }
-
-  int frames() const { return simulator_.frames(); }
-  const SimulatedTracks& tracks() const { return tracks_; }
-  const Window& window() const { return window_; }
-  /// True motion of the body from the frame before.
-  Eigen::Isometry3d motionTo(int frame) const { return truth(frame - 1).inverse() * truth(frame); }
-  WindowEstimate add(int frame, const MotionSummary& motion) {
-    return window_.add(tracks_.frames[frame], T_body_cam_, motion, {motion.T_a_b});
-  }
-
- private:
-  Eigen::Isometry3d truth(int frame) const { return simulator_.stateAtFrame(frame).T_world_body; }
-
-  Simulator simulator_;
-  SimulatedTracks tracks_;
-  std::vector<Eigen::Isometry3d> T_body_cam_;
-  Window window_;
-};
 
 void add(const Consistency& one, Consistency* sum) {
   sum->sum += one.sum;
