@@ -1,5 +1,5 @@
 # Messages, services, live parameters and what other packages see of this one.
-add_message_files(DIRECTORY msg FILES EgoMotion.msg)
+add_message_files(DIRECTORY msg FILES CalibratedCamera.msg Calibration.msg EgoMotion.msg)
 add_service_files(DIRECTORY srv FILES SetPose.srv)
 generate_messages(DEPENDENCIES geometry_msgs std_msgs)
 

@@ -56,10 +56,10 @@ install(FILES nodelet_plugins.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION
 install(DIRECTORY launch config DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 
 # Scripts stand beside the modules that they import.
-catkin_install_python(PROGRAMS scripts/euroc_to_bag.py scripts/kitti_to_bag.py scripts/evaluate.py
+catkin_install_python(PROGRAMS scripts/euroc_to_bag.py scripts/kitti_to_bag.py scripts/evaluate.py scripts/wrong_rigs.py
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 file(GLOB script_modules CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/scripts/*.py)
-list(FILTER script_modules EXCLUDE REGEX "/(euroc_to_bag|kitti_to_bag|evaluate).py$")
+list(FILTER script_modules EXCLUDE REGEX "/(euroc_to_bag|kitti_to_bag|evaluate|wrong_rigs).py$")
 install(FILES ${script_modules} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 
 if(MULTICAM_EGOMOTION_TESTS)

@@ -78,6 +78,8 @@ add_ros_test(live_faults live_faults.test bag:=${simulated}.bag rig:=${simulated
 set_tests_properties(rostest_live_faults PROPERTIES TIMEOUT 600)  # with as many signals as one likes
 add_test(NAME test_egomotion_bag COMMAND ${PYTHON_EXECUTABLE}
   ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_egomotion_bag.py $<TARGET_FILE:egomotion_bag> ${simulated})
+add_test(NAME test_wrong_rigs COMMAND ${PYTHON_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/test/unit/ros/test_wrong_rigs.py
+  $<TARGET_FILE:egomotion_bag> $<TARGET_FILE:egomotion_sim>)
 set_tests_properties(rostest_replay_simulated rostest_topics_only rostest_bag_loop
   rostest_nodelet_manager rostest_live_faults test_egomotion_bag PROPERTIES FIXTURES_REQUIRED simulated)
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "multicam_egomotion/ros/calibration_message.h"
+
 namespace multicam_egomotion {
 namespace {
 
@@ -43,6 +45,16 @@ void summarize(const Health& health, diagnostic_updater::DiagnosticStatusWrapper
   }
 }
 
+void describeCalibration(const Health& health, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  for (const CameraCalibration& one : health.calibration) {
+    const std::string& camera = health.cameras.at(one.camera);
+    status.add(camera + " rotation", rotationText(one));
+    if (!one.overlaps) continue;
+    status.addf(camera + " focal length [%]", "%.3f", 100.0 * one.focal_length);
+    status.addf(camera + " static error [px]", "%.2f", one.static_error_px);
+  }
+}
+
 }  // namespace
 
 void describe(const Health& health, diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -70,6 +82,7 @@ void describe(const Health& health, diagnostic_updater::DiagnosticStatusWrapper&
                 result.accelerometer_bias.y(), result.accelerometer_bias.z());
     status.add("odom epoch", result.odom_epoch);
   }
+  describeCalibration(health, status);
   status.add("frame sets", health.counters.frame_sets);
   status.add("frame sets without IMU", health.counters.frame_sets_without_imu);
   status.add("estimation failures", health.counters.estimation_failures);

@@ -111,6 +111,7 @@ void EgoMotionRos::publish(const std::vector<EgoMotionResult>& results) {
   if (paused_) return;
   for (const EgoMotionResult& result : results) {
     publishers_->publish(result, odometry_->rig(), *recent_images_);
+    publishers_->publishCalibration(*odometry_, result.stamp_ns);
     std::optional<double> latency_ms;
     if (const auto arrival = recent_images_->lastArrival(result)) {
       latency_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - *arrival).count();
@@ -127,10 +128,13 @@ void EgoMotionRos::report() {
   health.dropped_imu = queue_->droppedImu();
   if (acquisition_ != nullptr) health.changed_camera_infos = acquisition_->changes();
   health.faults.clear();
+  health.cameras.clear();
   if (odometry_ != nullptr) {
     health.counters = odometry_->counters();
     health.faults = odometry_->faults();
     health.gyroscope_check = odometry_->gyroscopeCheck();
+    health.calibration = odometry_->calibration();
+    for (const RigCamera& camera : odometry_->rig().cameras()) health.cameras.push_back(camera.name);
   }
   if (!input_fault_.empty()) health.faults.push_back(std::exchange(input_fault_, ""));
   if (transform_watch_ != nullptr) {

@@ -38,6 +38,7 @@ void visitParameters(Parameters& p, Visitor& v) {
 
   EgoMotionOptions& o = p.odometry;
   v("use_imu", o.use_imu);
+  v("calibrate_online", o.calibrate_online);
   v("imu_orientation", o.imu_orientation, {"filter", "message"});
   v("solver", o.solver, {"auto", "4pt-vertical", "4pt-axis"});
   v("seed", o.seed, 0, 2147483647);

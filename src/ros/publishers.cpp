@@ -22,6 +22,7 @@ Publishers::Publishers(ros::NodeHandle node, const FrameNames& frames, const Nod
   odometry_imu_ = node.advertise<nav_msgs::Odometry>("odometry_imu", 200);
   path_publisher_ = node.advertise<nav_msgs::Path>("path", 1);
   points_ = node.advertise<sensor_msgs::PointCloud2>("points", 2);
+  calibration_ = node.advertise<Calibration>("calibration", 1, true);
   features_ = transport_.advertise("features", 2);
 }
 
@@ -43,6 +44,10 @@ void Publishers::publish(const EgoMotionResult& result, const CameraRig& rig, co
     const cv::Mat picture = drawFeatures(result, rig, images);
     features_.publish(cv_bridge::CvImage(header, sensor_msgs::image_encodings::BGR8, picture).toImageMsg());
   }
+}
+
+void Publishers::publishCalibration(const EgoMotion& odometry, std::int64_t stamp_ns) {
+  if (const auto message = calibrations_.next(odometry, stamp_ns, frames_)) calibration_.publish(*message);
 }
 
 void Publishers::publishTransforms(const EgoMotionResult& result) {

@@ -12,8 +12,10 @@
 #include "bag_runner/bag_replay.h"
 #include "bag_runner/command_line.h"
 #include "bag_runner/output_bag.h"
+#include "bag_runner/rig_output.h"
 #include "bag_runner/run_report.h"
 #include "bag_runner/trajectory_files.h"
+#include "multicam_egomotion/ros/calibration_message.h"
 #include "multicam_egomotion/ros/ego_motion_message.h"
 #include "stop_signals.h"
 
@@ -22,9 +24,11 @@ namespace {
 
 /// The files that were asked for, filled result by result.
 struct Outputs {
-  Outputs(const BagCommand& command, const Eigen::Isometry3d& T_body_cam0, const FrameNames& names) : frames(names) {
+  Outputs(const BagCommand& command, const Parameters& parameters, const EgoMotion& source, const BagReplay& replay)
+      : odometry(source), frames{parameters.node.odom_frame, replay.topics().base_frame} {
+    if (!command.write_rig.empty()) rig.emplace(command.write_rig, replay.rigFile(), parameters.node);
     if (!command.trajectory.empty()) tum.emplace(command.trajectory);
-    if (!command.kitti.empty()) kitti.emplace(command.kitti, T_body_cam0);
+    if (!command.kitti.empty()) kitti.emplace(command.kitti, odometry.rig().camera(0).T_body_cam);
     if (!command.output_bag.empty()) bag.emplace(command.output_bag);
   }
 
@@ -40,8 +44,11 @@ struct Outputs {
     if (bag) bag->write([&](rosbag::Bag& output) { writeMessages(result, time, &output); });
   }
 
-  void writeMessages(const EgoMotionResult& result, const ros::Time& time, rosbag::Bag* output) const {
+  void writeMessages(const EgoMotionResult& result, const ros::Time& time, rosbag::Bag* output) {
     writeEgoMotion(output, "ego_motion", time, result, frames);
+    if (const std::optional<Calibration> message = calibration.next(odometry, result.stamp_ns, frames)) {
+      output->write("calibration", time, *message);
+    }
     if (result.has_relative_pose) output->write("relative_pose", time, toRelativePose(result, frames));
     if (!result.has_pose) return;
     output->write("odometry", time, toOdometry(result, frames));
@@ -54,9 +61,13 @@ struct Outputs {
     if (tum) tum->close();
     if (kitti) kitti->close();
     if (bag) bag->close();
+    if (rig) rig->write(odometry);
   }
 
+  const EgoMotion& odometry;
   FrameNames frames;
+  CalibrationMessages calibration;
+  std::optional<RigOutput> rig;
   std::optional<TumFile> tum;
   std::optional<KittiFile> kitti;
   std::optional<OutputBag> bag;
@@ -79,8 +90,7 @@ int run(const BagCommand& command) {
   const rosbag::Bag bag(command.bag, rosbag::bagmode::Read);
   BagReplay replay(bag, parameters, command.imu_topic);
   EgoMotion& odometry = replay.odometry();
-  Outputs outputs(command, odometry.rig().camera(0).T_body_cam,
-                  {parameters.node.odom_frame, replay.topics().base_frame});
+  Outputs outputs(command, parameters, odometry, replay);
   RunReport report;
   replay.play([&](const EgoMotionResult& result, const ros::Time& time) { outputs.write(result, time, &report); },
               &report,
@@ -89,8 +99,8 @@ int run(const BagCommand& command) {
               },
               &StopSignals::received);
   outputs.close();
-  if (!command.report.empty()) report.writeJson(command.report, odometry.counters(), parameters);
-  std::printf("%s", report.summary().c_str());
+  if (!command.report.empty()) report.writeJson(command.report, odometry, parameters);
+  std::printf("%s", report.summary(odometry).c_str());
   if (report.interrupted) {
     std::fprintf(stderr, "egomotion_bag: interrupted; the files hold what came before\n");
     return 0;

@@ -209,7 +209,7 @@ TEST_F(Replay, DiagnosticsTellTheState) {
   }
   EXPECT_TRUE(tracking);
   for (const char* key : {"status", "rate [Hz]", "latency median [ms]", "tracks", "inlier ratio", "scale state",
-                          "IMU state", "dropped images"}) {
+                          "IMU state", "cam1 rotation", "dropped images"}) {
     EXPECT_EQ(values.count(key), 1u) << key;
   }
 }

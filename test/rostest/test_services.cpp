@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The services of a running odometry, and that it runs: a jump of odom only where one was asked for.
 #include <gtest/gtest.h>
+#include <multicam_egomotion/Calibration.h>
 #include <multicam_egomotion/EgoMotion.h>
 #include <multicam_egomotion/SetPose.h>
 #include <nav_msgs/Odometry.h>
@@ -58,6 +59,17 @@ TEST_F(Services, SetPoseAndResetStartNewEpochs) {
   waitFor([] { return false; }, 0.3);  // what was under way
   odometry_ = nullptr;
   EXPECT_FALSE(waitFor([this] { return odometry_ != nullptr; }, 1.0));
+  // The last calibration is kept for who comes later.
+  multicam_egomotion::Calibration::ConstPtr calibration;
+  const boost::function<void(const multicam_egomotion::Calibration::ConstPtr&)> keep =
+      [&calibration](const multicam_egomotion::Calibration::ConstPtr& message) { calibration = message; };
+  const ros::Subscriber late = node_.subscribe<multicam_egomotion::Calibration>("calibration", 1, keep);
+  ASSERT_TRUE(waitFor([&calibration] { return calibration != nullptr; }, 10.0)) << "no calibration";
+  EXPECT_EQ(calibration->header.frame_id, "base_link");
+  ASSERT_EQ(calibration->cameras.size(), 1u);
+  EXPECT_EQ(calibration->cameras[0].name, "cam1");
+  EXPECT_TRUE(calibration->cameras[0].overlaps);
+  EXPECT_GT(calibration->cameras[0].rotation_covariance[0], 0.0);
   ASSERT_TRUE(ros::service::call("egomotion/resume", resume));
   EXPECT_TRUE(resume.response.success);
   EXPECT_TRUE(waitFor([this] { return odometry_ != nullptr; }));

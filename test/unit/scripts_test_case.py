@@ -22,11 +22,11 @@ DATA = pathlib.Path(os.environ.get("MULTICAM_EGOMOTION_DATA", PACKAGE.parent / "
 EPOCH_NS = 1_400_000_000_123_456_789
 
 
-def real_data(folder):
-    """The path of a folder of real recordings, or a skip that names it."""
-    if not (DATA / folder).is_dir():
-        raise unittest.SkipTest(f"real data folder {folder} not found (MULTICAM_EGOMOTION_DATA)")
-    return DATA / folder
+def real_data(name):
+    """The path of a folder or file of real recordings, or a skip that names it."""
+    if not (DATA / name).exists():
+        raise unittest.SkipTest(f"real data {name} not found (MULTICAM_EGOMOTION_DATA)")
+    return DATA / name
 
 
 def run(main, *arguments):

@@ -19,6 +19,14 @@
 
 namespace multicam_egomotion {
 
+inline SimulationOptions lasting(double seconds, std::uint64_t seed = 1, int cameras = 0) {
+  SimulationOptions options;
+  options.duration_s = seconds;
+  options.seed = seed;
+  options.cameras = cameras;
+  return options;
+}
+
 /// Normalized squared errors of one kind.
 struct Consistency {
   double sum = 0.0;
@@ -81,6 +89,44 @@ inline MotionSummary predictedMotion(const Eigen::Isometry3d& T_a_b, const Windo
   motion.translation_covariance = sigma * sigma * Eigen::Matrix3d::Identity();
   return motion;
 }
+
+/// A window over simulated tracks, started at the true pose of a frame.
+class SimulatedWindow {
+ public:
+  /// `given`: the rig as the window is told that it is.
+  SimulatedWindow(const Scenario& scenario, const TrackSimulationOptions& options, int first, const CameraRig& given,
+                  const RigCalibration& calibration = {}, const WindowOptions& window = {})
+      : simulator_(scenario),
+        tracks_(simulateTracks(scenario, options)),
+        T_body_cam_(cameraPosesOf(given)),
+        window_(window, calibration) {
+    start(first);
+  }
+  SimulatedWindow(const Scenario& scenario, const TrackSimulationOptions& options, int first)
+      : SimulatedWindow(scenario, options, first, scenario.rig) {}
+
+  void start(int frame) {
+    const TrackedFrame& seen = tracks_.frames[frame];
+    window_.start(seen.stamp_ns, truth(frame), Matrix6d::Zero(), seen, T_body_cam_);
+  }
+
+  int frames() const { return simulator_.frames(); }
+  const SimulatedTracks& tracks() const { return tracks_; }
+  const std::vector<Eigen::Isometry3d>& cameraPoses() const { return T_body_cam_; }
+  const Window& window() const { return window_; }
+  Eigen::Isometry3d truth(int frame) const { return simulator_.stateAtFrame(frame).T_world_body; }
+  /// True motion of the body from the frame before.
+  Eigen::Isometry3d motionTo(int frame) const { return truth(frame - 1).inverse() * truth(frame); }
+  WindowEstimate add(int frame, const MotionSummary& motion) {
+    return window_.add(tracks_.frames[frame], T_body_cam_, motion, {motion.T_a_b});
+  }
+
+ private:
+  Simulator simulator_;
+  SimulatedTracks tracks_;
+  std::vector<Eigen::Isometry3d> T_body_cam_;
+  Window window_;
+};
 
 inline WindowRun runWindow(const Scenario& scenario, const WindowRunOptions& options) {
   const Simulator simulator(scenario);

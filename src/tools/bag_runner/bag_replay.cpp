@@ -43,6 +43,18 @@ std::optional<CameraImage> decode(const rosbag::MessageInstance& message, int ca
   return std::nullopt;
 }
 
+/// The rig of CameraInfo and TF, with the topics as a node would subscribe to them.
+RigFile asFile(const RigSetup& setup, const RigTopics& topics, bool has_imu) {
+  const std::string compressed = "/compressed";
+  RigFile file{setup.rig, topics.images, topics.camera_infos, topics.base_frame, has_imu, setup.imu};
+  for (std::string& topic : file.image_topics) {
+    const std::size_t end = topic.size() - std::min(topic.size(), compressed.size());
+    if (topic.compare(end, compressed.size(), compressed) == 0) topic.resize(end);
+  }
+  if (has_imu) file.imu.topic = topics.imu;
+  return file;
+}
+
 }  // namespace
 
 BagReplay::BagReplay(const rosbag::Bag& bag, const Parameters& parameters, const std::string& imu_topic)
@@ -51,12 +63,16 @@ BagReplay::BagReplay(const rosbag::Bag& bag, const Parameters& parameters, const
   const bool with_file = !parameters.node.rig_file.empty();
   if (with_file) {
     setup = loadRigSetup(parameters, &topics_);
+    rig_file_ = loadRigFile(parameters.node.rig_file, parameters.node.rig_imu_file);
   } else {
     topics_ = defaultTopics(std::max(1, camerasInBag(bag)), parameters.node.base_frame);
   }
   if (!imu_topic.empty()) topics_.imu = imu_topic;
   matchTopics(bag, use_imu_, !with_file, &topics_);
-  if (!setup) setup = rigFromBag(bag, parameters, topics_);
+  if (!setup) {
+    setup = rigFromBag(bag, parameters, topics_);
+    rig_file_ = asFile(*setup, topics_, use_imu_);
+  }
   odometry_ = makeEgoMotion(*setup, parameters);
 }
 
@@ -69,6 +85,9 @@ void BagReplay::play(const OnResult& on_result, RunReport* report, const OnImage
   ProgressBar progress(view.size());
   DataClock clock;
   ros::Time bag_time;
+  // Topics rarely end together: less than a second of IMU data after the last image says nothing of the images.
+  const ros::Time last_image = rosbag::View(bag_, rosbag::TopicQuery(topics_.images)).getEndTime();
+  const bool images_end_early = view.getEndTime() - last_image > ros::Duration(1.0);
   for (const rosbag::MessageInstance& message : view) {
     if (stop && stop()) {
       report->interrupted = true;
@@ -99,7 +118,9 @@ void BagReplay::play(const OnResult& on_result, RunReport* report, const OnImage
       odometry_->addImage(*image, now_ns);
     }
     for (const EgoMotionResult& result : odometry_->advance(now_ns)) on_result(result, bag_time);
+    if (bag_time == last_image) report->messages = odometry_->faults();
   }
+  if (images_end_early || report->interrupted) report->messages = odometry_->faults();
   report->mark();
   for (const EgoMotionResult& result : odometry_->finish()) on_result(result, bag_time);
 }

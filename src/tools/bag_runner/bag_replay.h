@@ -6,9 +6,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bag_runner/run_report.h"
+#include "multicam_egomotion/odometry/rig_file.h"
 #include "multicam_egomotion/ros/rig_setup.h"
 
 namespace multicam_egomotion {
@@ -30,12 +32,15 @@ class BagReplay {
             const std::function<bool()>& stop = nullptr);
 
   const RigTopics& topics() const { return topics_; }
+  /// The rig before the run, as a file that a run can read: the rig file as it is, or the bag's CameraInfo and TF.
+  const RigFile& rigFile() const { return *rig_file_; }
   EgoMotion& odometry() { return *odometry_; }
 
  private:
   const rosbag::Bag& bag_;
   bool use_imu_;
   RigTopics topics_;
+  std::optional<RigFile> rig_file_;
   std::unique_ptr<EgoMotion> odometry_;
 };
 

@@ -22,8 +22,9 @@ bool parseCommandLine(int argc, char** argv, BagCommand* command) {
       ("imu-topic", po::value<std::string>(&command->imu_topic)->value_name("TOPIC"), "instead of the rig's")  //
       ("trajectory", path(&command->trajectory), "TUM: body in odom at each image stamp")                      //
       ("kitti", path(&command->kitti), "KITTI: camera 0 relative to its first pose, a line an image pair")     //
-      ("report", path(&command->report), "JSON: counts, times of the stages, CPU and memory")                  //
-      ("output-bag", path(&command->output_bag), "odometry, relative_pose, ego_motion and /tf");
+      ("report", path(&command->report), "JSON: counts, times of the stages, calibration, CPU and memory")     //
+      ("output-bag", path(&command->output_bag), "odometry, relative_pose, ego_motion, calibration and /tf")   //
+      ("write-rig", path(&command->write_rig), "rig YAML of this run with the estimated rotations of the cameras");
   try {
     po::variables_map values;
     po::store(po::command_line_parser(argc, argv).options(options).run(), values);

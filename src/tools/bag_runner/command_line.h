@@ -8,7 +8,7 @@ namespace multicam_egomotion {
 
 /// What egomotion_bag was asked to do; empty paths were not given.
 struct BagCommand {
-  std::string rig, rig_imu, config, bag, imu_topic, trajectory, kitti, report, output_bag;
+  std::string rig, rig_imu, config, bag, imu_topic, trajectory, kitti, report, output_bag, write_rig;
 };
 
 /// False when only help was wanted, which has been printed. Throws std::invalid_argument.

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
+
+#include "multicam_egomotion/ros/calibration_message.h"
 
 namespace multicam_egomotion {
 namespace {
@@ -103,6 +106,33 @@ class JsonObject {
   std::string text_;
 };
 
+std::string listJson(const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& value : values) text += (text.empty() ? "" : ", ") + value;
+  return "[" + text + "]";
+}
+
+std::string vectorJson(const Eigen::Vector3d& vector) {
+  std::ostringstream json;
+  json << std::setprecision(10) << '[' << vector.x() << ", " << vector.y() << ", " << vector.z() << ']';
+  return json.str();
+}
+
+std::string calibrationJson(const CameraCalibration& calibration, const std::string& camera) {
+  constexpr double kDegrees = 180.0 / M_PI;
+  JsonObject json;
+  json.add("camera", quoted(camera));
+  json.add("rotation_deg", vectorJson(kDegrees * calibration.rotation));
+  json.add("sigma_deg", vectorJson(kDegrees * calibration.covariance.diagonal().cwiseMax(0.0).cwiseSqrt()));
+  if (calibration.overlaps) {
+    json.add("focal_length_percent", 100.0 * calibration.focal_length);
+    json.add("static_error_px", calibration.static_error_px);
+  } else {  // not estimated
+    json.add("focal_length_percent", "null").add("static_error_px", "null");
+  }
+  return json.str();
+}
+
 }  // namespace
 
 void RunReport::stage(const char* name) {
@@ -132,8 +162,7 @@ void RunReport::addResult(const EgoMotionResult& result) {
   inliers_.push_back(result.inliers);
 }
 
-void RunReport::writeJson(const std::string& path, const EgoMotionCounters& counters,
-                          const Parameters& parameters) const {
+void RunReport::writeJson(const std::string& path, const EgoMotion& odometry, const Parameters& parameters) const {
   JsonObject times;
   for (const auto& [stage, values] : times_ms_) {
     JsonObject entry;
@@ -141,6 +170,7 @@ void RunReport::writeJson(const std::string& path, const EgoMotionCounters& coun
     entry.add("median_ms", quantile(values, 0.5)).add("p99_ms", quantile(values, 0.99));
     times.add(stage, entry.str());
   }
+  const EgoMotionCounters counters = odometry.counters();
   JsonObject faults;
   faults.add("frame_sets_without_imu", counters.frame_sets_without_imu)
       .add("estimation_failures", counters.estimation_failures)
@@ -149,6 +179,11 @@ void RunReport::writeJson(const std::string& path, const EgoMotionCounters& coun
       .add("late_images", counters.late_images)
       .add("rejected_images", counters.rejected_images)
       .add("undecodable_images", undecodable_images);
+  std::vector<std::string> texts, cameras;
+  for (const std::string& message : messages) texts.push_back(quoted(message));
+  for (const CameraCalibration& one : odometry.calibration()) {
+    cameras.push_back(calibrationJson(one, odometry.rig().camera(one.camera).name));
+  }
   JsonObject values;
   for (const auto& [name, value] : parameterValues(parameters)) values.add(name, parameterJson(value));
 
@@ -163,12 +198,13 @@ void RunReport::writeJson(const std::string& path, const EgoMotionCounters& coun
        << ",\n  \"stages\": " << times.str() << ",\n  \"status\": " << JsonObject::counts(statuses_)
        << ",\n  \"scale_state\": " << JsonObject::counts(scale_states_)
        << ",\n  \"solver\": " << JsonObject::counts(solvers_) << ",\n  \"faults\": " << faults.str()
+       << ",\n  \"messages\": " << listJson(texts) << ",\n  \"calibration\": " << listJson(cameras)
        << ",\n  \"parameters\": " << values.str() << "\n}\n";
   file.close();
   if (!file) throw std::runtime_error("'" + path + "': not everything could be written: " + std::strerror(errno));
 }
 
-std::string RunReport::summary() const {
+std::string RunReport::summary(const EgoMotion& odometry) const {
   std::ostringstream text;
   const double wall_s = std::chrono::duration<double>(Clock::now() - begin_).count();
   text << std::fixed << std::setprecision(1) << frames_ << " frames, " << poses << " poses, " << wall_s << " s ("
@@ -179,6 +215,15 @@ std::string RunReport::summary() const {
     text << "  " << std::left << std::setw(10) << stage << " median " << quantile(values, 0.5) << " ms, p99 "
          << quantile(values, 0.99) << " ms\n";
   }
+  for (const CameraCalibration& one : odometry.calibration()) {
+    text << "  " << odometry.rig().camera(one.camera).name << " turned by " << rotationText(one);
+    if (one.overlaps) {
+      text << ", focal length " << std::showpos << 100.0 * one.focal_length << std::noshowpos << " %, static error "
+           << one.static_error_px << " px";
+    }
+    text << "\n";
+  }
+  for (const std::string& message : messages) text << "  at the end: " << message << "\n";
   return text.str();
 }
 

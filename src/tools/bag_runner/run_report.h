@@ -24,11 +24,12 @@ class RunReport {
 
   bool interrupted = false;  ///< before the end of the bag
   std::uint64_t images = 0, imu_samples = 0, undecodable_images = 0, poses = 0;
+  std::vector<std::string> messages;  ///< what is wrong with the data at the end of the bag, as the odometry says
 
-  /// Throws std::runtime_error when the file cannot be written.
-  void writeJson(const std::string& path, const EgoMotionCounters& counters, const Parameters& parameters) const;
+  /// With what `odometry` says at the end of the run. Throws std::runtime_error when the file cannot be written.
+  void writeJson(const std::string& path, const EgoMotion& odometry, const Parameters& parameters) const;
   /// A few lines for a person.
-  std::string summary() const;
+  std::string summary(const EgoMotion& odometry) const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -64,6 +64,11 @@ struct FaultRow {
     drift_allowance_deg = allowance_deg;
     return *this;
   }
+  /// At most this share of the positions is further from the truth than 3 sigma.
+  FaultRow& beyondThreeSigma(double share) {
+    beyond_three_sigma_share = share;
+    return *this;
+  }
   /// The error of the position grows by no more than this from just before the faults on, and the truth is always
   /// within 3 sigma.
   FaultRow& gainsAtMost(double position_m) {
@@ -88,6 +93,7 @@ struct FaultRow {
   std::string name;
   std::vector<std::string> faults;
   double begin_s = 0.0, end_s = 1.5;
+  double beyond_three_sigma_share = 0.05;
   std::vector<std::pair<std::string, double>> least;
   std::vector<std::pair<std::string, double>> summaries;
   bool once_turned = false;

@@ -45,7 +45,12 @@ inline std::vector<FaultRow> simulatedRows() {
           .counts("time jumps", 1)
           .poses(0.95)
           .drifts(1.5, 0.02, 0.5),
-      FaultRow("time_gap", {"time_gap:from=2.5,to=3"}).during(2.5, 3.0).says("COASTING").poses(0.9),
+      // What the restart of the window does not know of the lengths yet is in the drift.
+      FaultRow("time_gap", {"time_gap:from=2.5,to=3"})
+          .during(2.5, 3.0)
+          .says("COASTING")
+          .poses(0.9)
+          .drifts(1.5, 0.03, 0.3),
       FaultRow("long_time_gap", {"time_gap:from=2.5,to=4"})
           .during(2.5, 4.0)
           .says("COASTING")
@@ -116,9 +121,13 @@ inline std::vector<FaultRow> simulatedRows() {
           .during(2.5, 3.5)
           .counts("estimation failures", 14)
           .says("COASTING"),
-      FaultRow("image_noise", {"image_noise:from=2.5,to=3.5"}).during(2.5, 3.5),
-      // Of 100 such noises 90 leave a drift of less than 0.025 m in the time after.
-      FaultRow("image_noise_heavy", {"image_noise:sigma=100,from=2.5,to=3.5"}).during(2.5, 3.5).drifts(1.5, 0.03, 0.3),
+      FaultRow("image_noise", {"image_noise:from=2.5,to=3.5"}).during(2.5, 3.5).drifts(1.5, 0.01, 0.3),
+      // Of 100 such noises 90 leave a drift of less than 0.025 m in the time after. A rig of 320x240 that is not
+      // calibrated yet learns some of the noise as calibration: its covariance is then too small.
+      FaultRow("image_noise_heavy", {"image_noise:sigma=100,from=2.5,to=3.5"})
+          .during(2.5, 3.5)
+          .drifts(1.5, 0.03, 0.3)
+          .beyondThreeSigma(0.6),
       FaultRow("obstruction_of_one_camera", {"obstruction:camera=0,from=2.5,to=3.5"}).during(2.5, 3.5),
       FaultRow("obstruction_of_all", {"obstruction:camera=-1,width=1,from=2.5,to=3.5"})
           .during(2.5, 3.5)

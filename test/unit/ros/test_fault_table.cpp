@@ -99,7 +99,8 @@ void expectSameAccuracyAfter(const FaultRow& row, const TrueRecording& recording
   // Before, during and after, where there is a before; a new odom epoch starts with a vertical yet to be found.
   const bool continued = row.begin_s > 0.0 && row.odom_epochs == 1;
   const Drift whole = driftBetween(poses, continued ? row.begin_s - 0.1 : begin, end);
-  EXPECT_LE(whole.beyond_three_sigma, 0.05 * whole.poses) << "positions beyond 3 sigma of " << whole.poses;
+  EXPECT_LE(whole.beyond_three_sigma, row.beyond_three_sigma_share * whole.poses)
+      << "positions beyond 3 sigma of " << whole.poses;
   EXPECT_LE(whole.position_m, row.most_gained_m);
   if (std::isfinite(row.most_gained_m)) {
     EXPECT_EQ(driftBetween(poses, 0.0, end).beyond_three_sigma, 0);

@@ -5,7 +5,11 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
+#include "multicam_egomotion/ros/calibration_message.h"
+#include "multicam_egomotion/ros/diagnostics.h"
 #include "multicam_egomotion/ros/messages.h"
 
 namespace multicam_egomotion {
@@ -105,6 +109,87 @@ TEST(Messages, PointCloudOfNoPoints) {
   const sensor_msgs::PointCloud2 cloud = toPointCloud(result, {"odom", "base"});
   EXPECT_EQ(cloud.width * cloud.height, 0u);
   EXPECT_EQ(cloud.fields.size(), 3u);
+}
+
+/// Two cameras beside each other, and what is known of the second.
+CameraRig stereoRig() {
+  const CameraModel model(640, 480, 400, 400, 320, 240, Distortion::kNone, {});
+  const Eigen::Isometry3d left = Eigen::Isometry3d::Identity(), right(Eigen::Translation3d(0.1, 0, 0));
+  return CameraRig({{"left", "left_optical", model, left}, {"right", "right_optical", model, right}});
+}
+
+CameraCalibration calibrationOfTheSecond() {
+  CameraCalibration one;
+  one.camera = 1;
+  one.rotation << 0.001, -0.002, 0.003;
+  one.covariance << 4e-8, 1e-9, 2e-9, 1e-9, 9e-8, 3e-9, 2e-9, 3e-9, 1e-8;
+  one.overlaps = true;
+  one.focal_length = 0.0015;
+  one.static_error_px = 0.25;
+  return one;
+}
+
+TEST(Messages, CalibrationNamesTheCamera) {
+  const CameraCalibration one = calibrationOfTheSecond();
+  const Calibration message = toCalibrationMessage({one}, stereoRig(), 1400000000123456789, {"odom", "base"});
+  EXPECT_EQ(toNanoseconds(message.header.stamp), 1400000000123456789);
+  EXPECT_EQ(message.header.frame_id, "base");
+  ASSERT_EQ(message.cameras.size(), 1u);
+  const CalibratedCamera& camera = message.cameras[0];
+  EXPECT_EQ(camera.name, "right");
+  EXPECT_EQ(camera.rotation.x, 0.001);
+  EXPECT_EQ(camera.rotation.y, -0.002);
+  EXPECT_EQ(camera.rotation.z, 0.003);
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) EXPECT_EQ(camera.rotation_covariance[3 * row + col], one.covariance(row, col));
+  }
+  EXPECT_TRUE(camera.overlaps);
+  EXPECT_EQ(camera.focal_length, 0.0015);
+  EXPECT_EQ(camera.static_error_px, 0.25);
+}
+
+TEST(Messages, CalibrationComesOnceASecond) {
+  const EgoMotion odometry(stereoRig(), ImuCalibration(), EgoMotionOptions());
+  CalibrationMessages messages;
+  const auto comes = [&](std::int64_t stamp_ns) { return messages.next(odometry, stamp_ns, {}).has_value(); };
+  const std::int64_t begin = 1400000000000000000;
+  EXPECT_TRUE(comes(begin));
+  EXPECT_FALSE(comes(begin));
+  EXPECT_FALSE(comes(begin + 999999999));
+  EXPECT_TRUE(comes(begin + 1000000000));
+  EXPECT_FALSE(comes(begin + 1500000000));
+  EXPECT_TRUE(comes(begin)) << "stamps jumped back";
+  EXPECT_TRUE(comes(begin + 60000000000));
+}
+
+TEST(Messages, NoCalibrationOfOneCameraOrWhenItIsSwitchedOff) {
+  CalibrationMessages messages;
+  EgoMotionOptions options;
+  const EgoMotion one_camera(CameraRig({stereoRig().camera(0)}), ImuCalibration(), options);
+  EXPECT_FALSE(messages.next(one_camera, 1, {}));
+  options.calibrate_online = false;
+  const EgoMotion switched_off(stereoRig(), ImuCalibration(), options);
+  EXPECT_FALSE(CalibrationMessages().next(switched_off, 1, {}));
+}
+
+TEST(Diagnostics, TellTheCalibration) {
+  Health health;
+  health.result.emplace();
+  health.cameras = {"left", "right"};
+  health.calibration = {calibrationOfTheSecond()};
+  const auto values = [&health] {
+    diagnostic_updater::DiagnosticStatusWrapper status;
+    describe(health, status);
+    std::map<std::string, std::string> all;
+    for (const auto& value : status.values) all[value.key] = value.value;
+    return all;
+  };
+  EXPECT_EQ(values()["right rotation"], "0.057 -0.115 0.172 deg (sigma 0.011 0.017 0.006)");
+  EXPECT_EQ(values()["right focal length [%]"], "0.150");
+  EXPECT_EQ(values()["right static error [px]"], "0.25");
+  health.calibration[0].overlaps = false;
+  EXPECT_EQ(values().count("right rotation"), 1u);
+  EXPECT_EQ(values().count("right static error [px]"), 0u);
 }
 
 TEST(Messages, ImuOrientationNeedsACovariance) {

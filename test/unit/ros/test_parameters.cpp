@@ -11,7 +11,8 @@ namespace {
 
 std::string text(XmlRpc::XmlRpcValue value) {
   std::ostringstream stream;
-  stream << value.getType() << ' ' << value;
+  stream << value.getType() << ' ';
+  value.write(stream);  // its operator<< is hidden by those of our messages
   return stream.str();
 }
 
