@@ -145,20 +145,6 @@ int BundleAdjustment::furtherCameras(const BundleLandmark& landmark,
   return count;
 }
 
-Eigen::Matrix2d BundleAdjustment::offsetCovariance(std::size_t landmark, int camera) const {
-  std::array<int, CameraRig::kMaxCameras> offset_of;
-  furtherCameras(landmarks[landmark], &offset_of);
-  const LandmarkBlock& block = blocks_[landmark];
-  if (offset_of[camera] < 0 || block.segment_count == 0) {
-    return std::pow(offset_sigma, 2) * Eigen::Matrix2d::Identity();
-  }
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(block.depth, 2);
-  unit.block<2, 2>(3 + 2 * offset_of[camera], 0).setIdentity();
-  const Eigen::Map<const Eigen::MatrixXd> L(values_.data() + block.L, block.depth, block.depth);
-  L.triangularView<Eigen::Lower>().solveInPlace(unit);
-  return pixel_sigma * pixel_sigma * unit.transpose() * unit;
-}
-
 double BundleAdjustment::cost(const BundleOptions& options) const {
   double sum = 0.0;
   for (const BundleLandmark& landmark : landmarks) {

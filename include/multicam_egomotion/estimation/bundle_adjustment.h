@@ -116,10 +116,6 @@ class BundleAdjustment {
   /// for more curved than it is.
   double newtonGain() const { return weight_square_sum_ > 0.0 ? weight_sum_ / weight_square_sum_ : 1.0; }
 
-  /// Covariance of a landmark's offset in a further camera, as its prior and the last linearization know it with the
-  /// poses as they are [px^2]; the prior's where the landmark was not part of it.
-  Eigen::Matrix2d offsetCovariance(std::size_t landmark, int camera) const;
-
   /// Pixel error of an observation [px]; false when the point is behind the camera.
   /// `by_inverse_distance`: its derivative by the landmark's inverse distance [px m], optional.
   bool error(const BundleLandmark& landmark, const BundleObservation& observation, Eigen::Vector2d* error_px,
