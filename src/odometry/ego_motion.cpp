@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <deque>
 #include <unordered_set>
 #include <utility>
@@ -41,7 +42,7 @@ constexpr double kManyMore = 1.5;              // times the inliers without the 
 constexpr double kDoubtedRotation = 0.35;      // sigma of its rotation then [rad]
 constexpr double kPoorScale = 0.05;            // sigma of the scale above which its error lasts
 constexpr double kContradicted = 6.0;          // accelerometer and images disagree; 3 is what noise makes
-constexpr double kSlackSigmas = 6.0;           // of a rotation within which matches are sought: beyond what is a fault
+constexpr double kSlackSigmas = 6.0;           // of a rotation within which matches are sought; a fault begins at 4
 constexpr double kFaultSigmas = 4.0;           // of what the rig file may be wrong by, contract 15
 constexpr double kImuHistory = 3.0;            // kept before the newest frame [s]
 

@@ -13,7 +13,7 @@ constexpr double kGain = 0.1;  // share of a frame's measured noise in the runni
 // [px].
 constexpr double kKeptPatchError = 0.8;
 constexpr double kPatchChangePx = 10.0;
-constexpr double kSmallestOffset = 0.02;  // [px]
+constexpr double kSmallestOffset = 0.02;  // keeps their prior invertible where images are exact [px]
 
 }  // namespace
 

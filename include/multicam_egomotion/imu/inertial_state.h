@@ -27,11 +27,12 @@ struct InertialStateOptions {
   double gyroscope_scale_sigma = 0.006;
   double accelerometer_scale_sigma = 0.01;
   double scale_error_time_s = 1.0;
-  /// Of vision's lengths by what its calibration does not know, the same for all [1]. The accelerometer tells no more
-  /// of it than its own scale is known: to the next line, as data sheets of MEMS sensors have it, and to what straight
-  /// lines between samples leave of motion of `motion_bandwidth_hz` [Hz].
+  /// Error that all lengths of vision share because of its calibration [1]; 0: none is estimated.
   double length_sigma = 0.0;
+  /// Constant scale error of the accelerometer, from data sheets of MEMS sensors [1]. It limits what can be learnt of
+  /// the lengths.
   double accelerometer_lasting_scale_sigma = 0.005;
+  /// Motion up to this frequency is expected. Straight lines between samples that are far apart shorten it [Hz].
   double motion_bandwidth_hz = 2.0;
   /// Unknown sustained acceleration of the platform beyond what the samples show, per axis [m/s^2].
   double motion_acceleration_sigma = 0.5;   ///< in motion
